@@ -1,0 +1,57 @@
+"""The only checks of shapes, types and finiteness: arrays that pass here may cross into the kernels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from obbcli.errors import ObbError
+
+
+
+def as_vector(
+    value: ArrayLike, name: str, error: type[ObbError]
+) -> NDArray[np.float64]:
+    """Return `value` as a read-only float64 (3,) array.
+
+    Raises:
+        error: not three finite numbers; `name` is the place named.
+    """
+    return as_floats(value, (3,), name, error)
+
+
+def as_floats(
+    value: ArrayLike, shape: tuple[int | None, ...], name: str, error: type[ObbError]
+) -> NDArray[np.float64]:
+    """Return `value` as a read-only, C-contiguous float64 array of the given shape.
+
+    Args:
+        value: anything NumPy can turn into an array of numbers.
+        shape: the shape wanted; None stands for any length.
+        name: the place named in errors.
+        error: the class raised.
+
+    Raises:
+        error: not numbers, another shape, or a value that is not finite (the first such place is named).
+    """
+    wanted = "(" + ", ".join("N" if n is None else str(n) for n in shape) + ")"
+    try:
+        # A copy, so that a caller who writes to the source later changes no answer.
+        array = np.array(value, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as fault:
+        raise error(name, f"expected numbers of shape {wanted}", f"{fault}") from fault
+    if array.ndim != len(shape) or any(
+        n is not None and n != m for n, m in zip(shape, array.shape, strict=True)
+    ):
+        raise error(name, f"has shape {array.shape}, expected {wanted}")
+    finite = np.isfinite(array)
+    if not finite.all():
+        place = np.unravel_index(int(np.argmin(finite)), array.shape)
+        index = ", ".join(str(int(i)) for i in place)
+        raise error(f"{name}[{index}]", f"is {array[place]}", "coordinates must be finite")
+    array.setflags(write=False)
+    return array
