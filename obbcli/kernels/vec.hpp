@@ -1,0 +1,62 @@
+// Vectors and matrices of three doubles: the arithmetic under every other kernel.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace obb {
+
+struct Vec3 {
+    double x, y, z;
+
+    [[nodiscard]] constexpr double operator[](std::size_t k) const {
+        return k == 0 ? x : k == 1 ? y : z;
+    }
+    [[nodiscard]] constexpr double& operator[](std::size_t k) {
+        return k == 0 ? x : k == 1 ? y : z;
+    }
+    friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+[[nodiscard]] constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+[[nodiscard]] constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+[[nodiscard]] constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+[[nodiscard]] constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+
+[[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] constexpr Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[nodiscard]] inline Vec3 abs(Vec3 a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
+[[nodiscard]] inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+
+// Sum and largest of the absolute components: the norms that rounding bounds are written in.
+[[nodiscard]] inline double norm_1(Vec3 a) {
+    return std::fabs(a.x) + std::fabs(a.y) + std::fabs(a.z);
+}
+[[nodiscard]] inline double norm_inf(Vec3 a) {
+    return std::fmax(std::fabs(a.x), std::fmax(std::fabs(a.y), std::fabs(a.z)));
+}
+
+// Rows of a 3x3 matrix.
+struct Mat3 {
+    std::array<Vec3, 3> rows;
+
+    [[nodiscard]] static constexpr Mat3 identity() {
+        return {{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};
+    }
+    [[nodiscard]] constexpr Vec3 column(std::size_t k) const {
+        return {rows[0][k], rows[1][k], rows[2][k]};
+    }
+    friend constexpr bool operator==(const Mat3&, const Mat3&) = default;
+};
+
+[[nodiscard]] constexpr Vec3 operator*(const Mat3& m, Vec3 v) {
+    return {dot(m.rows[0], v), dot(m.rows[1], v), dot(m.rows[2], v)};
+}
+
+// Unit roundoff of double: half a unit in the last place of 1.
+inline constexpr double kUnitRoundoff = 0x1p-53;
+
+} // namespace obb
