@@ -1,0 +1,96 @@
+"""What a question answers: status words, results and the counters behind them, all frozen.
+
+Kernels and queries fill them, reports read them; nothing here computes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from obbcli.errors import UnresolvedError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Status(str, Enum):
+    """How a question ended; the values are the words of the JSON documents."""
+
+    SEPARATED = "separated"
+    """No contact in the whole closed interval: a proof, unless the answer was sampled."""
+    CONTACT = "contact"
+    """First contact at a time later than 0."""
+    OVERLAP_AT_START = "overlap_at_start"
+    """Contact at t = 0, touching included; also of bodies at rest."""
+    UNRESOLVED = "unresolved"
+    """A limit was reached before the answer was known."""
+
+    def __str__(self) -> str:
+        """Return the bare word."""
+        return self.value
+
+
+@dataclass(frozen=True, kw_only=True)
+class QueryStats:
+    """What a question cost.
+
+    Attributes:
+        box_tests: pairs of boxes tested.
+        triangle_tests: pairs of triangles tested.
+        exact_triangle_tests: those of them that exact arithmetic had to decide.
+        pops: pairs taken from the queue or stack.
+        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
+            is asked for.
+        nodes_built_b: the same for B.
+        nodes_possible_a: nodes that A's tree can have.
+        nodes_possible_b: the same for B.
+        seconds: s of wall time by stage.
+    """
+
+    box_tests: int
+    triangle_tests: int
+    exact_triangle_tests: int
+    pops: int
+    nodes_built_a: int
+    nodes_built_b: int
+    nodes_possible_a: int
+    nodes_possible_b: int
+    seconds: Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Collision:
+    """Whether two bodies touch at any time asked about.
+
+    Attributes:
+        status: how the question ended. `Status.SEPARATED` is a proof.
+        witness: the ids of a triangle of A and one of B that meet; None where nothing meets or
+            where boxes stand for their triangles.
+        approximate: whether boxes stood for triangles, so that contact is not proven.
+        error_bound: mesh units; how far apart the surfaces can be although contact is said. 0
+            where exact.
+        stats: what the question cost.
+    """
+
+    status: Status
+    witness: tuple[int, int] | None
+    approximate: bool
+    error_bound: float
+    stats: QueryStats
+
+    @property
+    def collides(self) -> bool:
+        """Return whether the bodies touch.
+
+        Raises:
+            UnresolvedError: a limit was reached before the answer was known.
+        """
+        if self.status is Status.UNRESOLVED:
+            raise UnresolvedError(
+                "collides",
+                "the question stopped at a limit before its answer was known",
+                "raise max_iterations or timeout",
+            )
+        return self.status is not Status.SEPARATED
