@@ -1,0 +1,178 @@
+"""`Mesh`: checked triangles in file order, what every reader makes and every tree takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from obbcli.errors import MeshError
+from obbcli.mesh import measure, topology
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: Triangle ids and vertex indices are stored as int32.
+MAX_COUNT = 2**31 - 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """Holds a surface: vertices and the triangles between them, checked and read-only.
+
+    Nothing is merged, dropped or reordered: degenerate and repeated triangles stay, and row `i` of
+    `triangles` is triangle `i` of the file.
+
+    Args:
+        vertices: float64 (V, 3), mesh units, finite. Arrays open to writing are copied.
+        triangles: int32 (F, 3), rows of `vertices`; any whole numbers are taken.
+        source: the file's name, or None for a mesh made in code; named in errors.
+        sha256: SHA-256 of the file's bytes in hexadecimal, or None.
+
+    Raises:
+        MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
+            not finite.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    source: str | None = None
+    sha256: str | None = None
+
+    def __post_init__(self) -> None:
+        prefix = f"{self.source}: " if self.source else ""
+        vertices = _checked_vertices(self.vertices, prefix)
+        triangles = _checked_triangles(self.triangles, len(vertices), prefix)
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "triangles", triangles)
+
+    def __repr__(self) -> str:
+        source = f", source={self.source!r}" if self.source else ""
+        return f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles{source})"
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """Return the lower and upper corner of the surface's axis-aligned box, (2, 3).
+
+        Vertices that no triangle uses are no part of the surface.
+        """
+        return measure.bounds(self.vertices, self.triangles)
+
+    @cached_property
+    def size(self) -> float:
+        """Return the diagonal of `bounds`; infinite only where it exceeds the largest double."""
+        return measure.diagonal(self.bounds)
+
+    @cached_property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """Return the area-weighted centroid of the surface, (3,): the default pivot.
+
+        The mean of the used vertices where the area is exactly zero. The same bits on every
+        machine: sums run pairwise in file order.
+        """
+        return measure.surface_centroid(self.vertices, self.triangles)
+
+    @cached_property
+    def degenerate_count(self) -> int:
+        """Return how many triangles have an area of exactly zero, decided without rounding."""
+        return int(np.count_nonzero(measure.degenerate(self.vertices[self.triangles])))
+
+    @cached_property
+    def duplicate_count(self) -> int:
+        """Return how many triangles repeat an earlier one: same three places, in any order."""
+        return topology.duplicate_count(self._corner_ids)
+
+    @cached_property
+    def is_watertight(self) -> bool:
+        """Return whether the surface closes: each edge between two triangles, turned alike.
+
+        Edges are told apart by exact positions, not by indices (STL repeats its vertices), and each
+        must be run through exactly once in either direction. Triangles with two corners at one
+        position bound nothing and are left out; a surface of those alone is not watertight.
+        """
+        return topology.is_watertight(self._corner_ids)
+
+    @cached_property
+    def _corner_ids(self) -> NDArray[np.int64]:
+        """Return the corners as numbers of distinct positions, (F, 3)."""
+        return topology.position_ids(self.vertices)[self.triangles]
+
+
+def _checked_vertices(value: ArrayLike, prefix: str) -> NDArray[np.float64]:
+    """Return `value` as finite, read-only, C-contiguous float64 (V, 3)."""
+    array = _array(value, "vertices", prefix)
+    if array.dtype.kind not in "fiu":
+        raise MeshError(f"{prefix}vertices", f"have type {array.dtype}, expected numbers")
+    if len(array) > MAX_COUNT:
+        raise MeshError(
+            f"{prefix}vertices", f"{len(array)} vertices, at most {MAX_COUNT}", "split the mesh"
+        )
+    vertices = _frozen(array, np.float64)
+    # One pass: a sum of finite values can only mislead by overflowing, and then all are looked at.
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = float(vertices.sum())
+    if not np.isfinite(total):
+        bad = ~np.isfinite(vertices)
+        if bad.any():
+            row, axis = divmod(int(np.argmax(bad)), 3)
+            raise MeshError(
+                f"{prefix}vertex {row}",
+                f"{'xyz'[axis]} is {vertices[row, axis]}",
+                "coordinates must be finite",
+            )
+    return vertices
+
+
+def _checked_triangles(value: ArrayLike, vertex_count: int, prefix: str) -> NDArray[np.int32]:
+    """Return `value` as read-only, C-contiguous int32 (F, 3), every index below `vertex_count`."""
+    array = _array(value, "triangles", prefix)
+    if len(array) == 0:
+        raise MeshError(
+            f"{prefix}triangles",
+            "none found, at least one wanted",
+            "a mesh is a surface of triangles",
+        )
+    if len(array) > MAX_COUNT:
+        raise MeshError(
+            f"{prefix}triangles", f"{len(array)} triangles, at most {MAX_COUNT}", "split the mesh"
+        )
+    if array.dtype.kind == "f":
+        _refuse_first(array, array != np.floor(array), prefix, "which is no whole number")
+    elif array.dtype.kind not in "iu":
+        raise MeshError(
+            f"{prefix}triangles", f"have type {array.dtype}, expected integers below 2^63"
+        )
+    if array.min() < 0 or array.max() >= vertex_count:
+        outside = (array < 0) | (array >= vertex_count)
+        _refuse_first(array, outside, prefix, f"of {vertex_count}; indices start at 0")
+    return _frozen(array, np.int32)
+
+
+def _refuse_first(array: NDArray[Any], bad: NDArray[np.bool_], prefix: str, why: str) -> None:
+    """Raise an error that names the first triangle with a bad index, if there is one."""
+    if bad.any():
+        row, corner = divmod(int(np.argmax(bad)), 3)
+        raise MeshError(f"{prefix}triangle {row}", f"uses vertex {array[row, corner]} {why}")
+
+
+def _array(value: ArrayLike, name: str, prefix: str) -> NDArray[Any]:
+    """Return `value` as an array of shape (N, 3), its type not yet looked at."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as fault:
+        raise MeshError(f"{prefix}{name}", f"not an array of shape (N, 3): {fault}") from fault
+    if array.size == 0 and array.ndim < 2:
+        array = array.reshape(0, 3).astype(np.int64)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"{prefix}{name}", f"has shape {array.shape}, expected (N, 3)")
+    return array
+
+
+def _frozen(array: NDArray[Any], dtype: type) -> NDArray[Any]:
+    """Return a read-only C-contiguous array that nobody else writes to, copied if need be."""
+    owned = array.base is None and not array.flags.writeable
+    frozen: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=None if owned else True)
+    frozen.setflags(write=False)
+    return frozen

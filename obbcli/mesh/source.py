@@ -1,0 +1,106 @@
+"""The bytes of a mesh file with their place and digest; what every reader is given."""
+
+from __future__ import annotations
+
+import hashlib
+import stat
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from obbcli.errors import MeshError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    #: What a reader returns: vertices (V, 3) and triangles (F, 3), unchecked.
+    MeshArrays = tuple[NDArray[np.float64], NDArray[np.int32] | NDArray[np.int64]]
+
+#: Below this many bytes a thread costs more than the hash.
+_THREAD_FROM = 1 << 20
+
+
+@dataclass(frozen=True)
+class Source:
+    """Holds what was read, once: readers parse these bytes and the digest is of these bytes.
+
+    Args:
+        place: what errors name: the path as the caller gave it.
+        name: the file's name.
+        data: the whole file.
+        path: where it lies, or None where the bytes came from a stream.
+    """
+
+    place: str
+    name: str
+    data: bytes
+    path: Path | None = None
+
+    def error(self, fault: str, remedy: str = "", *, at: str = "") -> MeshError:
+        """Return an error at this file; `at` is a line number, or words such as `byte 84`."""
+        where = (
+            f"{self.place}:{at}" if at.isdigit() else f"{self.place}: {at}" if at else self.place
+        )
+        return MeshError(where, fault, remedy)
+
+
+def read_source(path: Path) -> Source:
+    """Return the contents of a file, or of a pipe.
+
+    Raises:
+        MeshError: it does not exist, is no file, may not be read, or is empty.
+    """
+    place = str(path)
+    try:
+        kind = path.stat().st_mode
+        if stat.S_ISDIR(kind):
+            raise MeshError(place, "is a directory, expected a mesh file", "name one file in it")
+        if not (stat.S_ISREG(kind) or stat.S_ISFIFO(kind)):
+            raise MeshError(place, "is a device or socket, expected a mesh file")
+        data = path.read_bytes()
+    except FileNotFoundError as fault:
+        raise MeshError(place, "no such file", "check the path") from fault
+    except PermissionError as fault:
+        raise MeshError(
+            place, "may not be read (permission denied)", f"chmod +r {place}"
+        ) from fault
+    except (OSError, ValueError) as fault:
+        # ValueError: a path that holds a NUL. OSError: too long a name, a failing disk, ...
+        reason = getattr(fault, "strerror", None) or str(fault)
+        if isinstance(fault, MeshError):
+            raise
+        raise MeshError(place, f"cannot be read: {reason}") from fault
+    except MemoryError as fault:
+        raise MeshError(place, "does not fit into memory") from fault
+    return checked_source(Source(place, path.name, data, path))
+
+
+def checked_source(source: Source) -> Source:
+    """Return `source` unless it is empty."""
+    if not source.data:
+        raise source.error("is empty, expected a mesh", "write the file again")
+    return source
+
+
+def digest_of(data: bytes) -> Callable[[], str]:
+    """Start to hash `data` and return what waits for the SHA-256 in hexadecimal.
+
+    Hashing runs beside parsing (hashlib releases the interpreter's lock) and always on the bytes
+    parsed: a later look at the file could find another one. The caller must wait before it returns,
+    so that no thread outlives a load and no bytes are kept.
+    """
+    if len(data) < _THREAD_FROM:
+        return hashlib.sha256(data).hexdigest
+    digest = hashlib.sha256()
+    thread = threading.Thread(target=digest.update, args=(data,), name="sha256", daemon=True)
+    thread.start()
+
+    def wait() -> str:
+        thread.join()
+        return digest.hexdigest()
+
+    return wait

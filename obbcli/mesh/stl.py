@@ -1,0 +1,171 @@
+"""STL, binary and ASCII, read directly and strictly.
+
+Binary files are told from ASCII ones by their size, 84 + 50 n bytes: the word "solid" opens many a
+binary header too. Libraries wrap counts, return empty meshes for truncated files, or are slow.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from obbcli.mesh.text import number, strip_mark
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from obbcli.mesh.source import MeshArrays, Source
+
+HEADER_SIZE = 84
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: The 21 words of a facet; None stands for a number.
+_FACET: tuple[bytes | None, ...] = (
+    *(b"facet", b"normal", None, None, None, b"outer", b"loop"),
+    *(b"vertex", None, None, None) * 3,
+    *(b"endloop", b"endfacet"),
+)
+#: Where in a facet the corners' numbers stand; the normal's are never used and may be anything.
+_COORDINATES = [k for k, word in enumerate(_FACET) if word is None and k > 4]
+_TITLE = re.compile(rb"^[ \t]*(?:solid|endsolid)(?:[ \t][^\r\n]*)?$", re.IGNORECASE | re.MULTILINE)
+_STARTS_SOLID = re.compile(rb"\s*solid\b", re.IGNORECASE)
+#: Bytes no text has; a header is padded with NULs more often than not.
+_BINARY_BYTES = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
+
+
+def read_stl(source: Source) -> MeshArrays:
+    """Return vertices (3 F, 3) and triangles (F, 3) of an STL file, three vertices a facet.
+
+    Raises:
+        MeshError: the header's count does not fit the file, or the text is no STL.
+    """
+    data = source.data
+    if is_binary_stl(data):
+        return _read_binary(data)
+    text = strip_mark(data)
+    if _STARTS_SOLID.match(text) and not _BINARY_BYTES.search(text[: 2 * HEADER_SIZE]):
+        return _read_ascii(source, text)
+    raise _not_binary(source)
+
+
+def is_binary_stl(data: bytes) -> bool:
+    """Return whether the size is what the count in the header says."""
+    if len(data) < HEADER_SIZE:
+        return False
+    return len(data) == HEADER_SIZE + RECORD.itemsize * _claimed(data)
+
+
+def is_ascii_stl(data: bytes) -> bool:
+    """Return whether the text begins as an ASCII STL does."""
+    return _STARTS_SOLID.match(strip_mark(data)) is not None
+
+
+def _claimed(data: bytes) -> int:
+    return int.from_bytes(data[80:HEADER_SIZE], "little")
+
+
+def _read_binary(data: bytes) -> MeshArrays:
+    records = np.frombuffer(data, RECORD, offset=HEADER_SIZE)
+    vertices = np.empty((3 * len(records), 3))
+    with np.errstate(invalid="ignore"):  # a signalling NaN is refused later, by name
+        vertices.reshape(-1, 3, 3)[...] = records["corners"]
+    return vertices, _in_threes(len(records))
+
+
+def _in_threes(count: int) -> NDArray[np.int32]:
+    triangles = np.empty((count, 3), dtype=np.int32)
+    triangles.reshape(-1)[...] = np.arange(3 * count, dtype=np.int32)
+    return triangles
+
+
+def _not_binary(source: Source) -> Exception:
+    """Return the error of a file that is neither kind of STL, with the figures that show it."""
+    size = len(source.data)
+    if size < HEADER_SIZE:
+        return source.error(
+            f"has {size} bytes; a binary STL has at least {HEADER_SIZE}, an ASCII STL begins with "
+            "'solid'"
+        )
+    claimed = _claimed(source.data)
+    wanted = HEADER_SIZE + RECORD.itemsize * claimed
+    kind = "truncated" if size < wanted else "bytes after the last triangle"
+    return source.error(
+        f"the header counts {claimed} triangles, which takes {wanted} bytes, but the file has "
+        f"{size} ({kind}, a wrong count, or no STL)",
+        "export or download it again",
+        at="byte 80",
+    )
+
+
+def _read_ascii(source: Source, text: bytes) -> MeshArrays:
+    """Return the facets of all solids: by whole columns where all is regular, else word by word."""
+    vertices = _read_regular(text)
+    if vertices is None:
+        vertices = _read_words(source, text)
+    return vertices, _in_threes(len(vertices) // 3)
+
+
+def _read_regular(text: bytes) -> NDArray[np.float64] | None:
+    """Return the corners where the words repeat exactly as in `_FACET`, or None."""
+    titles = _TITLE.findall(text)
+    if not titles or not titles[-1].strip().lower().startswith(b"endsolid"):
+        return None
+    words = _TITLE.sub(b"", text).split()
+    count = len(words) // len(_FACET)
+    if count == 0 or count * len(_FACET) != len(words):
+        return None
+    for k, word in enumerate(_FACET):
+        if word is not None and set(map(bytes.lower, words[k :: len(_FACET)])) != {word}:
+            return None
+    vertices = np.empty((3 * count, 3))
+    columns = vertices.reshape(count, 9)
+    for column, k in enumerate(_COORDINATES):
+        numbers = words[k :: len(_FACET)]
+        try:
+            columns[:, column] = list(map(float, numbers))
+        except ValueError:
+            return None
+        if b"_" in b"".join(numbers):
+            return None
+    return vertices if np.isfinite(vertices).all() else None
+
+
+def _read_words(source: Source, text: bytes) -> NDArray[np.float64]:
+    """Return the corners word by word: any line breaks, and errors that name their line.
+
+    Raises:
+        MeshError: a word out of place, a number that is none, an end inside a solid.
+    """
+    numbers: list[float] = []
+    place = 0
+    inside = False
+    line = 1
+    for line, word, starts_line in _words(text):
+        wanted = _FACET[place]
+        if place == 0 and starts_line and word.lower() in (b"solid", b"endsolid"):
+            inside = word.lower() == b"solid"
+        elif wanted is None:
+            if place > 4:
+                numbers.append(number(source, word, line))
+            place += 1
+        elif word.lower() != wanted:
+            found = word.decode("latin-1")
+            raise source.error(f"found '{found}', expected '{wanted.decode()}'", at=str(line))
+        else:
+            place = (place + 1) % len(_FACET)
+    if place or inside:
+        raise source.error("the file ends inside a solid", "it was cut short", at=str(line))
+    return np.array(numbers, dtype=np.float64).reshape(-1, 3)
+
+
+def _words(text: bytes) -> Iterator[tuple[int, bytes, bool]]:
+    """Yield line, word and whether it opens its line; a solid's name is passed over."""
+    for line, content in enumerate(text.splitlines(), start=1):
+        for index, word in enumerate(content.split()):
+            yield line, word, index == 0
+            if index == 0 and word.lower() in (b"solid", b"endsolid"):
+                break

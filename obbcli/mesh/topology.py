@@ -1,0 +1,73 @@
+"""Edges and repeats of a surface by exact positions; called by `Mesh`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: Odd 64-bit multipliers (golden ratio, and two of MurmurHash3's) that spread three words over one.
+_MULTIPLIERS = (0x9E3779B97F4A7C15, 0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)
+
+
+def position_ids(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return for each vertex the number of its exact position, (V,); equal positions share one.
+
+    One sort of one word a vertex: positions are hashed, and where two that differ share a hash
+    the whole is sorted by coordinates instead.
+    """
+    # Adding zero turns -0.0 into 0.0: the same place.
+    words = np.ascontiguousarray(vertices + 0.0).view(np.uint64)
+    keys = np.zeros(len(words), dtype=np.uint64)
+    for axis, multiplier in enumerate(_MULTIPLIERS):
+        keys = (keys ^ words[:, axis]) * np.uint64(multiplier)
+        keys ^= keys >> np.uint64(29)
+    order = np.argsort(keys, kind="stable")
+    ids = _number_runs(words[order], keys[order])
+    if ids is None:
+        order = np.lexsort((words[:, 2], words[:, 1], words[:, 0]))
+        ids = _number_runs(words[order], None)
+    assert ids is not None
+    result = np.empty(len(ids), dtype=np.int64)
+    result[order] = ids
+    return result
+
+
+def _number_runs(
+    words: NDArray[np.uint64], keys: NDArray[np.uint64] | None
+) -> NDArray[np.int64] | None:
+    """Return running numbers of equal neighbours, or None where equal keys hide different words."""
+    new = (words[1:] != words[:-1]).any(axis=1)
+    if keys is not None and (new & (keys[1:] == keys[:-1])).any():
+        return None
+    ids = np.zeros(len(words), dtype=np.int64)
+    np.cumsum(new, out=ids[1:])
+    return ids
+
+
+def duplicate_count(corners: NDArray[np.int64]) -> int:
+    """Return how many rows repeat an earlier one up to the order of their three ids."""
+    rows = np.sort(corners, axis=1)
+    # Two ids fit one word; the third is a second key.
+    pairs = rows[:, 0] * (int(rows.max()) + 1) + rows[:, 1]
+    order = np.lexsort((rows[:, 2], pairs))
+    pairs, third = pairs[order], rows[order, 2]
+    return int(np.count_nonzero((pairs[1:] == pairs[:-1]) & (third[1:] == third[:-1])))
+
+
+def is_watertight(corners: NDArray[np.int64]) -> bool:
+    """Return whether every edge is run through exactly once in either direction."""
+    a, b, c = corners.T
+    whole = (a != b) & (b != c) & (c != a)
+    if not whole.any():
+        return False
+    start = corners[whole].reshape(-1)
+    end = corners[whole][:, [1, 2, 0]].reshape(-1)
+    count = int(corners.max()) + 1
+    forward = np.sort(start * count + end)
+    if (forward[1:] == forward[:-1]).any():
+        return False
+    return bool(np.array_equal(forward, np.sort(end * count + start)))
