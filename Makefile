@@ -1,0 +1,161 @@
+# Everything is done from here. Needs make, Python 3.10 or later and nothing else: packages and build tools go into .venv,
+# compiled objects into .build, and a compiler is fetched where there is none.
+
+PYTHON ?= python3
+SAMPLES := sample_meshes
+KERNELS := obbcli/kernels
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip -qq --disable-pip-version-check
+# pip builds in this environment, with these tools, so that an unchanged kernel is not compiled again.
+INSTALL := $(PIP) install --no-build-isolation --check-build-dependencies
+BUILD_TOOLS := scikit-build-core nanobind cmake ninja
+SOURCES := $(wildcard $(addprefix $(KERNELS)/,*.cpp *.hpp CMakeLists.txt))
+CPP := $(filter-out %.txt,$(SOURCES))
+
+SANITIZE_TESTS ?= tests
+
+SHELL := /bin/sh
+.SHELLFLAGS := -eu -c
+.DELETE_ON_ERROR:
+.SUFFIXES:
+MAKEFLAGS += --no-builtin-rules
+.PHONY: help demo test check lint format-check types stub-check stub bench sanitize clean
+
+help:
+	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
+	@echo 'make test      set everything up and run the tests'
+	@echo 'make check     lint, formatting, types, stub, tests'
+	@echo 'make bench     measure against python-fcl and coal (BENCH_ARGS="--quick --json FILE")'
+	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
+	@echo 'make stub      write the kernels'"'"' type stub again'
+	@echo 'make clean     remove .venv, .build and caches'
+	@echo 'PYTHON=python3.12 chooses the interpreter, CXX=clang++ the compiler.'
+
+# ---- What is run
+
+OBBTREE := $(BIN)/obbtree
+
+demo: .venv/installed
+	$(OBBTREE) info $(SAMPLES)/gear.stl
+	mkdir -p .build/demo
+	$(OBBTREE) build $(SAMPLES)/gear.stl -o .build/demo/gear.obbt --force
+	$(OBBTREE) info .build/demo/gear.obbt --check
+	$(OBBTREE) collide .build/demo/gear.obbt $(SAMPLES)/pinion.stl
+
+test: .venv/installed
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+check: lint format-check types stub-check test
+
+lint: .venv/check-tools
+	$(BIN)/ruff check
+
+format-check: .venv/check-tools
+	$(BIN)/ruff format --check
+	$(BIN)/clang-format --dry-run -Werror $(CPP)
+
+types: .venv/installed .venv/check-tools
+	$(BIN)/mypy
+
+STUB := $(KERNELS)/_core.pyi
+WRITE_STUB := $(BIN)/python -m nanobind.stubgen --quiet -m obbcli.kernels._core -o
+
+stub-check: .venv/installed
+	$(WRITE_STUB) .build/_core.pyi
+	@diff -u $(STUB) .build/_core.pyi || { echo "$(STUB) is not what the kernels say: run 'make stub'" >&2; exit 1; }
+
+stub: .venv/installed
+	$(WRITE_STUB) $(STUB)
+
+bench: .venv/bench-tools .venv/installed
+	$(BIN)/python tests/bench/run.py $(BENCH_ARGS)
+
+# The address sanitizer wants to be the first library loaded, and the C++ library before the first exception.
+sanitize: .build/sanitize/installed
+	asan=$$($${CXX:-c++} -print-file-name=libasan.so); cxx=$$($${CXX:-c++} -print-file-name=libstdc++.so.6); \
+	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
+
+clean:
+	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find obbcli tests $(SAMPLES) -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# ---- What it runs in: one file in .venv for each thing done
+
+ifeq ($(filter clean help,$(MAKECMDGOALS)),)
+ifneq ($(wildcard .venv/place),)
+ifneq ($(shell cat .venv/place),$(CURDIR))
+$(error .venv was made in another folder and holds its paths: run 'make clean' first)
+endif
+endif
+endif
+
+define NEEDS
+import sys
+if sys.version_info < (3, 10):
+    sys.exit("obbtree needs Python 3.10 or later and %s is %d.%d: name another one, as in 'make PYTHON=python3.12 test'"
+             % ((sys.executable,) + sys.version_info[:2]))
+try:
+    import ensurepip, venv
+except ImportError as fault:
+    sys.exit("%s cannot make virtual environments (%s): install its venv module (Debian, Ubuntu: the package python3-venv)"
+             % (sys.executable, fault))
+import os.path, sysconfig
+if not os.path.isfile(os.path.join(sysconfig.get_path("include"), "Python.h")):
+    sys.exit("%s has no C headers (Python.h), which the kernels need: install them "
+             "(Debian, Ubuntu: the package python3-dev; Fedora: python3-devel)" % sys.executable)
+endef
+export NEEDS
+
+.venv/place:
+	@command -v "$(PYTHON)" >/dev/null || \
+	  { echo "there is no $(PYTHON): install Python 3.10 or later, or name it, as in 'make PYTHON=python3.12 test'" >&2; exit 1; }
+	@"$(PYTHON)" -c "$$NEEDS"
+	@echo 'Setting up .venv (once, some minutes)'
+	@"$(PYTHON)" -m venv .venv
+	@pwd >$@
+
+.venv/build-tools: .venv/place
+	@$(PIP) install --upgrade pip $(BUILD_TOOLS)
+	@touch $@
+
+# Empty where the machine has a compiler; else the settings that stand for one.
+.venv/compiler: .venv/build-tools
+	@for name in "$${CXX:-c++}" c++ g++ clang++; do \
+	  if command -v "$${name%% *}" >/dev/null; then : >$@; exit 0; fi; \
+	done; \
+	echo 'No C++ compiler was found: using the one in the ziglang wheel, which is slow (some minutes more)'; \
+	$(PIP) install ziglang; \
+	for tool in c++ cc ar ranlib; do \
+	  case $$tool in c*) flags=-mcpu=baseline ;; *) flags= ;; esac; \
+	  printf '#!/bin/sh\nZIG_GLOBAL_CACHE_DIR=%s ZIG_LOCAL_CACHE_DIR=%s exec %s -m ziglang %s %s "$$@"\n' \
+	    "'$(CURDIR)/.build/zig'" "'$(CURDIR)/.build/zig'" "'$(CURDIR)/$(BIN)/python'" "$$tool" "$$flags" >"$(BIN)/zig-$$tool"; \
+	  chmod +x "$(BIN)/zig-$$tool"; \
+	done; \
+	echo 'PATH="$$PWD/$(BIN):$$PATH" CXX=zig-c++ CC=zig-cc; export PATH CXX CC' >$@; \
+	echo 'CMAKE_ARGS="-DCMAKE_AR=$$PWD/$(BIN)/zig-ar -DCMAKE_RANLIB=$$PWD/$(BIN)/zig-ranlib -DCMAKE_CXX_SCAN_FOR_MODULES=OFF"; export CMAKE_ARGS' >>$@
+
+.venv/installed: .venv/compiler pyproject.toml $(SOURCES)
+	@echo 'Building the kernels'
+	@. ./.venv/compiler; $(INSTALL) -e '.[test]'
+	@touch $@
+
+.venv/check-tools: pyproject.toml | .venv/installed
+	@$(INSTALL) -e '.[check]'
+	@touch $@
+
+.venv/bench-tools: pyproject.toml | .venv/installed
+	@$(INSTALL) -e '.[bench]'
+	@touch $@
+
+# A second environment that borrows the first one's packages, with kernels of its own.
+.build/sanitize/installed: .venv/installed
+	@if [ -s .venv/compiler ]; then echo 'make sanitize needs GCC: the fetched compiler has no address sanitizer' >&2; exit 1; fi
+	@echo 'Building the kernels with sanitizers'
+	@$(BIN)/python -m venv --without-pip .build/sanitize/venv
+	@site='import sysconfig; print(sysconfig.get_path("purelib"))'; \
+	$(BIN)/python -c "$$site" >"$$(.build/sanitize/venv/bin/python -c "$$site")/borrowed.pth"
+	@$(PIP) --python .build/sanitize/venv/bin/python install --no-build-isolation --no-deps \
+	  -C build-dir=.build/sanitize/objects -C cmake.build-type=Debug -C cmake.define.OBBTREE_SANITIZE=ON -e .
+	@touch $@
