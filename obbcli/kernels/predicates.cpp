@@ -2,7 +2,8 @@
 
 #include "exact_shape.hpp"
 
-#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -16,45 +17,64 @@ constexpr double kTripleError = 16 * kUnitRoundoff;
 constexpr double kLargest = 0x1p100;
 constexpr double kTiny = 0x1p-900;
 
-enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
+[[nodiscard]] double smaller(double a, double b) { return b < a ? b : a; }
+[[nodiscard]] double larger(double a, double b) { return a < b ? b : a; }
+[[nodiscard]] double smallest(double a, double b, double c) { return smaller(smaller(a, b), c); }
+[[nodiscard]] double largest(double a, double b, double c) { return larger(larger(a, b), c); }
 
-[[nodiscard]] Sign sign_beyond(double value, double error) {
-    return value > error ? Sign::kPositive : value < -error ? Sign::kNegative : Sign::kUnsure;
+// std::fmax is a library call on x86-64, and no component here is NaN.
+[[nodiscard]] double reach(const Vec3& v) {
+    return largest(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
 }
+
+enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
 
 // The side of the directed plane through a, b, c that d is on.
 [[nodiscard]] Sign side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = b - a;
     const Vec3 v = c - a;
     const Vec3 w = d - a;
-    const double error = kTripleError * norm_1(u) * norm_1(v) * norm_inf(w) + kTiny;
-    return sign_beyond(dot(cross(u, v), w), error);
+    const double error = kTripleError * norm_1(u) * norm_1(v) * reach(w) + kTiny;
+    const double value = dot(cross(u, v), w);
+    return value > error ? Sign::kPositive : value < -error ? Sign::kNegative : Sign::kUnsure;
 }
 
-[[nodiscard]] std::array<Sign, 3> sides(const Triangle& plane, const Triangle& other) {
+// Which vertices of a triangle are surely above and surely below another's plane, a bit each.
+struct Sides {
+    unsigned above = 0;
+    unsigned below = 0;
+
+    [[nodiscard]] bool all_same() const { return above == 7 || below == 7; }
+    [[nodiscard]] bool all_sure() const { return (above | below) == 7; }
+    // Of sure sides that differ, the vertex that stands alone and whether it is below.
+    [[nodiscard]] bool lone_is_below() const { return std::has_single_bit(below); }
+    [[nodiscard]] std::size_t lone() const {
+        return static_cast<std::size_t>(std::countr_zero(lone_is_below() ? below : above));
+    }
+};
+
+[[nodiscard]] Sides sides(const Triangle& plane, const Triangle& other) {
     const Vec3 u = plane[1] - plane[0];
     const Vec3 v = plane[2] - plane[0];
     const Vec3 normal = cross(u, v);
-    const double error = kTripleError * norm_1(u) * norm_1(v);
-    std::array<Sign, 3> result{};
-    for (std::size_t k = 0; k < 3; ++k) {
+    const double scale = kTripleError * norm_1(u) * norm_1(v);
+    Sides result;
+    for (unsigned k = 0; k < 3; ++k) {
         const Vec3 w = other[k] - plane[0];
-        result[k] = sign_beyond(dot(normal, w), error * norm_inf(w) + kTiny);
+        const double error = scale * reach(w) + kTiny;
+        const double value = dot(normal, w);
+        result.above |= static_cast<unsigned>(value > error) << k;
+        result.below |= static_cast<unsigned>(value < -error) << k;
     }
     return result;
 }
 
-[[nodiscard]] bool all_same(const std::array<Sign, 3>& s) { return s[0] == s[1] && s[0] == s[2]; }
-
-// Of three sure signs that are not all the same, the index of the one that stands alone.
-[[nodiscard]] std::size_t lone(const std::array<Sign, 3>& s) {
-    return s[0] == s[1] ? 2 : s[0] == s[2] ? 1 : 0;
-}
-
 [[nodiscard]] bool boxes_apart(const Triangle& a, const Triangle& b) {
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto [low_a, high_a] = std::minmax({a[0][k], a[1][k], a[2][k]});
-        const auto [low_b, high_b] = std::minmax({b[0][k], b[1][k], b[2][k]});
+        const double low_a = smallest(a[0][k], a[1][k], a[2][k]);
+        const double high_a = largest(a[0][k], a[1][k], a[2][k]);
+        const double low_b = smallest(b[0][k], b[1][k], b[2][k]);
+        const double high_b = largest(b[0][k], b[1][k], b[2][k]);
         if (high_a < low_b || high_b < low_a) {
             return true;
         }
@@ -67,26 +87,17 @@ enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
 // Guigue and Devillers 2003, Fast and robust triangle-triangle overlap test using orientation
 // predicates, with signs that must all be sure.
 [[nodiscard]] std::optional<bool> traces_overlap(const Triangle& a, const Triangle& b,
-                                                 const std::array<Sign, 3>& sides_a,
-                                                 const std::array<Sign, 3>& sides_b) {
-    const std::size_t i = lone(sides_a);
-    const std::size_t j = lone(sides_b);
-    std::size_t a1 = (i + 1) % 3;
-    std::size_t a2 = (i + 2) % 3;
-    std::size_t b1 = (j + 1) % 3;
-    std::size_t b2 = (j + 2) % 3;
+                                                 const Sides& sides_a, const Sides& sides_b) {
+    const std::size_t i = sides_a.lone();
+    const std::size_t j = sides_b.lone();
     // Turn either triangle over so that each lone vertex is above the other's plane.
-    if (sides_a[i] == Sign::kNegative) {
-        std::swap(b1, b2);
-    }
-    if (sides_b[j] == Sign::kNegative) {
-        std::swap(a1, a2);
-    }
-    const Sign first = side(a[a1], b[j], a[i], b[b1]);
+    const std::size_t turn_a = sides_b.lone_is_below() ? 2 : 1;
+    const std::size_t turn_b = sides_a.lone_is_below() ? 2 : 1;
+    const Sign first = side(a[(i + turn_a) % 3], b[j], a[i], b[(j + turn_b) % 3]);
     if (first == Sign::kPositive) {
         return false;
     }
-    const Sign second = side(a[i], b[j], a[a2], b[b2]);
+    const Sign second = side(a[i], b[j], a[(i + 3 - turn_a) % 3], b[(j + 3 - turn_b) % 3]);
     if (second == Sign::kPositive) {
         return false;
     }
@@ -104,7 +115,7 @@ struct Filter {
         : points{Vec3{0, 0, 0}, a[1] - a[0], a[2] - a[0], b[0] - a[0], b[1] - a[0], b[2] - a[0]},
           extent(0) {
         for (const Vec3& p : points) {
-            extent = std::max(extent, norm_inf(p));
+            extent = larger(extent, reach(p));
         }
     }
 
@@ -115,8 +126,10 @@ struct Filter {
         for (std::size_t k = 0; k < 6; ++k) {
             s[k] = dot(axis, points[k]);
         }
-        const auto [low_a, high_a] = std::minmax({s[0], s[1], s[2]});
-        const auto [low_b, high_b] = std::minmax({s[3], s[4], s[5]});
+        const double low_a = smallest(s[0], s[1], s[2]);
+        const double high_a = largest(s[0], s[1], s[2]);
+        const double low_b = smallest(s[3], s[4], s[5]);
+        const double high_b = largest(s[3], s[4], s[5]);
         return low_b - high_a > error || low_a - high_b > error;
     }
 
@@ -154,11 +167,11 @@ struct Filter {
 }
 
 [[nodiscard]] bool within_range(const Triangle& a, const Triangle& b) {
-    double largest = 0;
+    double magnitude = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        largest = std::max({largest, norm_inf(a[k]), norm_inf(b[k])});
+        magnitude = larger(magnitude, larger(reach(a[k]), reach(b[k])));
     }
-    return largest <= kLargest;
+    return magnitude <= kLargest;
 }
 
 } // namespace
@@ -170,16 +183,15 @@ TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
     if (!within_range(a, b)) {
         return {triangles_intersect_exactly(a, b), true};
     }
-    const std::array<Sign, 3> sides_b = sides(a, b);
-    if (sides_b[0] != Sign::kUnsure && all_same(sides_b)) {
+    const Sides sides_b = sides(a, b);
+    if (sides_b.all_same()) {
         return {false, false};
     }
-    const std::array<Sign, 3> sides_a = sides(b, a);
-    if (sides_a[0] != Sign::kUnsure && all_same(sides_a)) {
+    const Sides sides_a = sides(b, a);
+    if (sides_a.all_same()) {
         return {false, false};
     }
-    const auto unsure = [](Sign sign) { return sign == Sign::kUnsure; };
-    if (std::ranges::none_of(sides_a, unsure) && std::ranges::none_of(sides_b, unsure)) {
+    if (sides_a.all_sure() && sides_b.all_sure()) {
         if (const std::optional<bool> overlap = traces_overlap(a, b, sides_a, sides_b)) {
             return {*overlap, false};
         }

@@ -23,6 +23,7 @@ class WideInt {
         limbs_.fill(value < 0 ? ~std::uint64_t{0} : 0);
         limbs_[0] = static_cast<std::uint64_t>(value);
     }
+    constexpr explicit WideInt(const std::array<std::uint64_t, Limbs>& limbs) : limbs_(limbs) {}
 
     // value * 2^shift; a negative shift may only drop zero bits.
     [[nodiscard]] static constexpr WideInt from(std::int64_t value, int shift) {
@@ -118,6 +119,23 @@ class WideInt {
     std::array<std::uint64_t, Limbs> limbs_{};
 };
 
+namespace detail {
+
+// Subtracts b * 2^(64 Low), where `wanted`, from as many limbs.
+template <std::size_t Low, std::size_t M, std::size_t Limbs>
+constexpr void subtract_high(std::array<std::uint64_t, Limbs>& from, const WideInt<M>& b,
+                             bool wanted) {
+    const std::uint64_t mask = wanted ? ~std::uint64_t{0} : 0;
+    std::uint64_t borrow = 0;
+    for (std::size_t k = 0; k < M; ++k) {
+        const Uint128 term = Uint128{from[Low + k]} - (b.limb(k) & mask) - borrow;
+        from[Low + k] = static_cast<std::uint64_t>(term);
+        borrow = static_cast<std::uint64_t>(term >> 64) & 1;
+    }
+}
+
+} // namespace detail
+
 // The whole product, which always fits.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] constexpr WideInt<N + M> operator*(const WideInt<N>& a, const WideInt<M>& b) {
@@ -131,18 +149,10 @@ template <std::size_t N, std::size_t M>
         }
         product[i + M] = carry;
     }
-    WideInt<N + M> result;
-    for (std::size_t k = 0; k < N + M; ++k) {
-        result.set_limb(k, product[k]);
-    }
     // Read as unsigned, a negative factor is 2^(64 * its limbs) too large.
-    if (a.is_negative()) {
-        result = result - (b.template resized<N + M>() << (64 * N));
-    }
-    if (b.is_negative()) {
-        result = result - (a.template resized<N + M>() << (64 * M));
-    }
-    return result;
+    detail::subtract_high<N>(product, b, a.is_negative());
+    detail::subtract_high<M>(product, a, b.is_negative());
+    return WideInt<N + M>(product);
 }
 
 template <std::size_t N>
