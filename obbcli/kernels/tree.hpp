@@ -1,0 +1,84 @@
+// A tree of boxes over triangles, as plain arrays, and the walk from a node to its children.
+#pragma once
+
+#include "node.hpp"
+#include "triangle.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+namespace obb {
+
+// What an array of a tree holds contradicts the others: a damaged file, never a caller's fault.
+struct TreeError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+using Corners = std::array<std::uint32_t, 3>;
+
+// A node is known by its range of triangles and the slot of its box. A range of one triangle has no
+// box: the triangle is tested itself.
+struct NodeRef {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::uint32_t slot;
+    std::uint32_t depth;
+
+    [[nodiscard]] std::uint32_t triangle_count() const { return end - begin; }
+    [[nodiscard]] bool is_triangle() const { return end - begin == 1; }
+};
+
+// Boxes stand in depth-first order: the left child's box follows its parent's. A range of n
+// triangles owns n - 1 slots whatever its shape, so a node's slot depends on its range alone and
+// not on the order in which nodes are split. Every step narrows the range, so that links of a
+// damaged file can neither cycle nor cross: a traversal ends, whatever they hold.
+struct TreeView {
+    std::span<const Vec3> vertices;
+    std::span<const Corners> corners;            // of the triangles, in tree order
+    std::span<const std::uint32_t> triangle_ids; // rows of the mesh file, in tree order
+    std::span<const Node> nodes;
+    int scale_exponent; // a length in the tree's unit times 2^scale_exponent is in mesh units
+
+    [[nodiscard]] std::uint32_t triangle_count() const {
+        return static_cast<std::uint32_t>(corners.size());
+    }
+    [[nodiscard]] NodeRef root() const { return {0, triangle_count(), 0, 0}; }
+
+    // The node with a box; only for ranges of more than one triangle.
+    [[nodiscard]] const Node& node(const NodeRef& ref) const {
+        if (ref.slot >= nodes.size()) {
+            throw TreeError("a link leads beyond the boxes");
+        }
+        return nodes[ref.slot];
+    }
+
+    [[nodiscard]] static bool is_leaf(const Node& node) { return node.split == 0; }
+
+    [[nodiscard]] static std::array<NodeRef, 2> children(const NodeRef& ref, const Node& node) {
+        if (node.split <= ref.begin || node.split >= ref.end) {
+            throw TreeError("a split lies outside its range");
+        }
+        if (node.right <= ref.slot) {
+            throw TreeError("a link leads backwards");
+        }
+        return {{{ref.begin, node.split, ref.slot + 1, ref.depth + 1},
+                 {node.split, ref.end, node.right, ref.depth + 1}}};
+    }
+
+    // One triangle of a leaf that holds several.
+    [[nodiscard]] static NodeRef triangle_ref(const NodeRef& leaf, std::uint32_t position) {
+        return {position, position + 1, leaf.slot, leaf.depth};
+    }
+
+    [[nodiscard]] Triangle triangle(std::uint32_t position) const {
+        const Corners& c = corners[position];
+        if (c[0] >= vertices.size() || c[1] >= vertices.size() || c[2] >= vertices.size()) {
+            throw TreeError("a triangle uses a vertex that is not there");
+        }
+        return {vertices[c[0]], vertices[c[1]], vertices[c[2]]};
+    }
+};
+
+} // namespace obb

@@ -1,0 +1,274 @@
+#include "tree_build.hpp"
+
+#include "scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace obb {
+
+namespace {
+
+// The power of two that brings the largest coordinate into [1/2, 1).
+int scale_exponent_of(std::span<const Vec3> vertices) {
+    double largest = 0;
+    for (const Vec3& v : vertices) {
+        largest = std::fmax(largest, norm_inf(v));
+    }
+    return exponent_of(largest);
+}
+
+float rounded_up(double value) {
+    const auto nearest = static_cast<float>(value);
+    return static_cast<double>(nearest) < value
+               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+               : nearest;
+}
+
+Vec3 centroid(const Triangle& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
+
+Triangle relative_to(const Triangle& t, Vec3 p) { return {t[0] - p, t[1] - p, t[2] - p}; }
+
+// Indices of the axes, longest first; equal lengths keep their order.
+std::array<std::size_t, 3> longest_first(Vec3 half_extents) {
+    std::array<std::size_t, 3> order{0, 1, 2};
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        return half_extents[i] > half_extents[k];
+    });
+    return order;
+}
+
+} // namespace
+
+TreeBuilder::TreeBuilder(std::span<const Vec3> vertices, std::span<const Corners> corners,
+                         const BuildOptions& options)
+    : options_(options), scale_exponent_(scale_exponent_of(vertices)) {
+    const auto count = static_cast<std::uint32_t>(corners.size());
+    items_.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            items_[i].corners[k] = scaled(vertices[corners[i][k]], -scale_exponent_);
+        }
+        items_[i].id = i;
+    }
+    if (count < 2) {
+        return;
+    }
+    keys_.resize(count);
+    nodes_.resize(count - 1);
+    const Range all{0, count};
+    const Vec3 reference = items_[0].corners[0];
+    fit_box(all, moments_of(all, reference), reference, nodes_[0]);
+    pending_.push_back({0, count, 0, 0});
+}
+
+bool TreeBuilder::advance(std::uint64_t work) {
+    const std::uint64_t stop = work_done_ + work;
+    while (!pending_.empty() && work_done_ < stop) {
+        const NodeRef ref = pending_.back();
+        pending_.pop_back();
+        if (is_leaf(ref)) {
+            continue;
+        }
+        split_node(ref);
+        work_done_ += ref.triangle_count();
+        for (const NodeRef& child : TreeView::children(ref, nodes_[ref.slot])) {
+            if (!child.is_triangle()) {
+                pending_.push_back(child);
+            }
+        }
+    }
+    return pending_.empty();
+}
+
+// A balanced tree moves every triangle once a level.
+double TreeBuilder::progress() const {
+    const double levels = std::log2(static_cast<double>(items_.size()) + 1.0);
+    const double total = levels * static_cast<double>(items_.size());
+    return pending_.empty() ? 1.0 : std::min(0.99, static_cast<double>(work_done_) / total);
+}
+
+bool TreeBuilder::is_leaf(const NodeRef& ref) const {
+    return ref.triangle_count() <= options_.leaf_size || ref.depth >= options_.max_depth;
+}
+
+void TreeBuilder::split_node(const NodeRef& ref) {
+    Node& node = nodes_[ref.slot];
+    std::array<Moments, 2> moments;
+    const std::uint32_t split = partition({ref.begin, ref.end}, node, node.center, moments);
+    node.split = split;
+    node.right = ref.slot + (split - ref.begin);
+    const std::array<Range, 2> ranges{{{ref.begin, split}, {split, ref.end}}};
+    const std::array<std::uint32_t, 2> slots{ref.slot + 1, node.right};
+    for (std::size_t side = 0; side < 2; ++side) {
+        if (ranges[side].size() > 1) {
+            fit_box(ranges[side], moments[side], node.center, nodes_[slots[side]]);
+        }
+    }
+}
+
+// Eberly 2008 §6.2. The center rule may put all centroids on one side; the next longest axes are
+// tried then, and at last the median of the longest axis, which always parts them.
+std::uint32_t TreeBuilder::partition(Range range, const Node& node, Vec3 reference,
+                                     std::array<Moments, 2>& moments) {
+    const auto axes = axes_of(node.rotation);
+    const auto order = longest_first(half_extents_of(node));
+    if (options_.split == Split::kCenter) {
+        for (const std::size_t k : order) {
+            compute_keys(range, axes[k]);
+            const Threshold at_center{dot(axes[k], node.center), 0};
+            const auto is_left = [&](double key) { return key < at_center.key; };
+            const auto first = keys_.begin() + range.begin, last = keys_.begin() + range.end;
+            if (std::any_of(first, last, is_left) && !std::all_of(first, last, is_left)) {
+                return partition_at(range, at_center, reference, moments);
+            }
+        }
+    }
+    compute_keys(range, axes[order[0]]);
+    return partition_at(range, median_threshold(range), reference, moments);
+}
+
+void TreeBuilder::compute_keys(Range range, Vec3 axis) {
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        keys_[i] = dot(axis, centroid(items_[i].corners));
+    }
+}
+
+// Ties are broken by the triangle's id, so that half of the range lies on each side even where all
+// keys are equal, and the same whatever order the triangles arrived in.
+TreeBuilder::Threshold TreeBuilder::median_threshold(Range range) {
+    candidates_.clear();
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        candidates_.emplace_back(keys_[i], items_[i].id);
+    }
+    const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(candidates_.size() / 2);
+    std::nth_element(candidates_.begin(), middle, candidates_.end());
+    return {middle->first, middle->second};
+}
+
+std::uint32_t TreeBuilder::partition_at(Range range, const Threshold& threshold, Vec3 reference,
+                                        std::array<Moments, 2>& moments) {
+    const bool needs_moments = options_.fit != Fit::kAxisAligned;
+    const auto is_left = [&](std::uint32_t i) {
+        return threshold.is_above(keys_[i], items_[i].id);
+    };
+    const auto count_in = [&](std::size_t side, std::uint32_t i) {
+        if (needs_moments) {
+            moments[side].add(relative_to(items_[i].corners, reference), options_.fit);
+        }
+    };
+    std::uint32_t left = range.begin, right = range.end;
+    while (true) {
+        for (; left < right && is_left(left); ++left) {
+            count_in(0, left);
+        }
+        for (; left < right && !is_left(right - 1); --right) {
+            count_in(1, right - 1);
+        }
+        if (left == right) {
+            return left;
+        }
+        std::swap(items_[left], items_[right - 1]);
+        std::swap(keys_[left], keys_[right - 1]);
+    }
+}
+
+Moments TreeBuilder::moments_of(Range range, Vec3 reference) const {
+    Moments moments;
+    if (options_.fit != Fit::kAxisAligned) {
+        for (std::uint32_t i = range.begin; i < range.end; ++i) {
+            moments.add(relative_to(items_[i].corners, reference), options_.fit);
+        }
+    }
+    return moments;
+}
+
+// The smallest box of the given orientation. Its half extents are those of the exact coordinates
+// along the stored axes, plus what rounding may have lost: the projections (relative to the box's
+// own size), the axes' defect of a few ulps, and the centre's last place.
+void TreeBuilder::fit_box(Range range, const Moments& moments, Vec3 reference, Node& node) const {
+    constexpr double kRelativeMargin = 0x1p-45;
+    constexpr double kCenterMargin = 0x1p-50;
+
+    Moments by_corners;
+    const Moments* chosen = &moments;
+    if (options_.fit != Fit::kAxisAligned && moments.is_empty()) { // no area: points or segments
+        for (std::uint32_t i = range.begin; i < range.end; ++i) {
+            by_corners.add_corners(relative_to(items_[i].corners, reference));
+        }
+        chosen = &by_corners;
+    }
+    node.rotation = chosen->is_empty() ? std::array<float, 4>{1, 0, 0, 0}
+                                       : quaternion_of(chosen->principal_axes());
+
+    const auto axes = axes_of(node.rotation);
+    const Vec3 origin = items_[range.begin].corners[0];
+    std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        for (const Vec3& corner : items_[i].corners) {
+            const Vec3 p = corner - origin;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double y = dot(axes[k], p);
+                low[k] = y < low[k] ? y : low[k];
+                high[k] = y > high[k] ? y : high[k];
+            }
+        }
+    }
+    node.center = origin;
+    double total = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        node.center = node.center + (0.5 * (low[k] + high[k])) * axes[k];
+        total += 0.5 * (high[k] - low[k]);
+    }
+    const double margin = kRelativeMargin * total + kCenterMargin * norm_1(node.center);
+    for (std::size_t k = 0; k < 3; ++k) {
+        node.half_extents[k] = rounded_up(0.5 * (high[k] - low[k]) + margin);
+    }
+    node.split = node.right = node.reserved = 0;
+}
+
+// Leaves of several triangles leave gaps in the slots that their ranges own. Slots follow one
+// another in depth-first order, so moving the boxes together keeps a left child behind its parent.
+std::vector<Node> TreeBuilder::take_nodes() {
+    std::vector<Node> nodes;
+    nodes.swap(nodes_);
+    if (options_.leaf_size == 1 &&
+        options_.max_depth == std::numeric_limits<std::uint32_t>::max()) {
+        return nodes;
+    }
+    std::vector<Node> compact;
+    std::vector<std::pair<NodeRef, std::uint32_t>> walk; // a node, and the parent whose right it is
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    if (!nodes.empty()) {
+        walk.push_back({{0, static_cast<std::uint32_t>(items_.size()), 0, 0}, kNone});
+    }
+    while (!walk.empty()) {
+        const auto [ref, parent] = walk.back();
+        walk.pop_back();
+        const auto slot = static_cast<std::uint32_t>(compact.size());
+        if (parent != kNone) {
+            compact[parent].right = slot;
+        }
+        compact.push_back(nodes[ref.slot]);
+        if (compact.back().split == 0) {
+            continue;
+        }
+        const auto [left, right] = TreeView::children(ref, nodes[ref.slot]);
+        if (!right.is_triangle()) {
+            walk.push_back({right, slot});
+        }
+        if (!left.is_triangle()) {
+            walk.push_back({left, kNone});
+        }
+    }
+    return compact;
+}
+
+std::vector<std::uint32_t> TreeBuilder::triangle_ids() const {
+    std::vector<std::uint32_t> ids(items_.size());
+    std::transform(items_.begin(), items_.end(), ids.begin(), [](const Item& i) { return i.id; });
+    return ids;
+}
+
+} // namespace obb
