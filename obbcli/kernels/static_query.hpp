@@ -1,0 +1,121 @@
+// Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
+#pragma once
+
+#include "box_tests.hpp"
+#include "pose.hpp"
+#include "tree.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace obb {
+
+struct StaticQueryOptions {
+    // Find every intersecting pair of triangles instead of stopping at the first contact.
+    bool all_pairs = false;
+    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
+    bool boxes_for_leaves = false;
+    // Nodes this deep stand for what they hold; the root's depth is 0.
+    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    // Stop after so many pairs.
+    std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
+};
+
+struct TrianglePair {
+    std::int64_t a, b;
+    friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+struct StaticQueryCounts {
+    std::uint64_t box_tests = 0;
+    std::uint64_t triangle_tests = 0;
+    std::uint64_t exact_triangle_tests = 0;
+    std::uint64_t pops = 0;
+};
+
+// One body of a query: boxes in the query's frame for pruning, posed triangles for verdicts.
+class PosedTree {
+  public:
+    PosedTree(const TreeView& tree, const Pose& pose) : tree_(&tree), pose_(pose) {}
+
+    // The frame in which boxes are tested: x -> matrix * (x * 2^-exponent) + offset.
+    void set_frame(const Mat3& matrix, Vec3 offset, int exponent);
+
+    [[nodiscard]] const TreeView& tree() const { return *tree_; }
+    [[nodiscard]] const Pose& pose() const { return pose_; }
+    [[nodiscard]] Obb box(const NodeRef& ref) const;
+    [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
+    [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
+    [[nodiscard]] std::uint32_t id(const NodeRef& ref) const;
+
+  private:
+    const TreeView* tree_;
+    Pose pose_;
+    Mat3 matrix_ = Mat3::identity();
+    Vec3 offset_{0, 0, 0};
+    bool is_moved_ = false;
+    int exponent_ = 0;
+    double scale_ = 1;
+};
+
+// The query as an object: advanced by so many pops at a time, so that callers can look at the clock
+// or at a Ctrl-C in between.
+class StaticQuery {
+  public:
+    // The trees must outlive the query. Throws std::domain_error where posed coordinates would
+    // leave the range of double.
+    StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
+                const StaticQueryOptions& options);
+
+    // Takes at most so many pairs off the stack; true when the answer is complete.
+    bool advance(std::uint64_t max_pops);
+
+    // Pairs of rows of the mesh files, sorted; the first contact found unless all were asked for.
+    [[nodiscard]] std::span<const TrianglePair> pairs() const { return pairs_; }
+    // Contact between boxes that stand for what they hold.
+    [[nodiscard]] bool is_by_boxes() const { return is_by_boxes_; }
+    [[nodiscard]] bool is_contact() const { return is_by_boxes_ || !pairs_.empty(); }
+    // Bounds how far apart the surfaces can be where boxes met, mesh units; 0 elsewhere.
+    [[nodiscard]] double error_bound() const { return error_bound_; }
+    [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
+
+  private:
+    struct Pair {
+        NodeRef a, b;
+    };
+    // A node as the tests see it: its triangle, or its box.
+    struct Shape {
+        bool is_triangle;
+        Obb box;
+        Triangle triangle;
+    };
+    enum class Kind { kTriangle, kBox, kOpen };
+
+    void set_frames();
+    [[nodiscard]] Kind kind_of(const PosedTree& body, const NodeRef& ref,
+                               std::uint32_t max_depth) const;
+    [[nodiscard]] static Shape shape_of(const PosedTree& body, const NodeRef& ref);
+    [[nodiscard]] bool are_apart(const Shape& a, const Shape& b);
+    void visit(const Pair& pair);
+    template <bool kOpensA>
+    void open(const Pair& pair, const Shape& other);
+    void meet(const Pair& pair, const Shape& a, const Shape& b);
+    [[nodiscard]] double distance_bound(const Shape& a, const Shape& b) const;
+    void finish();
+
+    PosedTree a_, b_;
+    StaticQueryOptions options_;
+    RoundingBound bound_{};
+    int exponent_ = 0;
+    std::vector<Pair> stack_;
+    std::vector<TrianglePair> pairs_;
+    bool is_by_boxes_ = false;
+    bool is_finished_ = false;
+    double error_bound_ = 0;
+    StaticQueryCounts counts_;
+};
+
+} // namespace obb
