@@ -12,10 +12,7 @@ if TYPE_CHECKING:
     from obbcli.errors import ObbError
 
 
-
-def as_vector(
-    value: ArrayLike, name: str, error: type[ObbError]
-) -> NDArray[np.float64]:
+def as_vector(value: ArrayLike, name: str, error: type[ObbError]) -> NDArray[np.float64]:
     """Return `value` as a read-only float64 (3,) array.
 
     Raises:

@@ -1,0 +1,25 @@
+"""The compiled kernels; the only module that touches the extension.
+
+Everything with a tight loop lives behind this border. Arrays that cross it were checked by
+`obbcli.arrays`, and every call that can take longer than a millisecond releases the GIL.
+"""
+
+from __future__ import annotations
+
+from obbcli.kernels._core import (
+    Fit,
+    Split,
+    StaticQuery,
+    Tree,
+    TreeBuilder,
+    TreeError,
+    keeps_denormals,
+)
+
+if not keeps_denormals():
+    raise ImportError(
+        "this process flushes denormal numbers to zero (a library linked with -ffast-math was "
+        "loaded before), which would void the proofs of obbtree; import obbcli first, or remove it"
+    )
+
+__all__ = ["Fit", "Split", "StaticQuery", "Tree", "TreeBuilder", "TreeError"]

@@ -1,0 +1,67 @@
+import enum
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+class TreeError(RuntimeError):
+    pass
+
+def keeps_denormals() -> bool: ...
+
+class Fit(enum.Enum):
+    TRIANGLES = 0
+
+    POINTS = 1
+
+    AXIS_ALIGNED = 2
+
+class Split(enum.Enum):
+    MEDIAN = 0
+
+    CENTER = 1
+
+class Tree:
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.uint32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangle_ids: Annotated[NDArray[numpy.uint32], dict(shape=(None,), order='C', device='cpu', writable=False)], nodes: Annotated[NDArray[numpy.uint8], dict(shape=(None, 64), order='C', device='cpu', writable=False)], scale_exponent: int) -> None: ...
+
+    def check(self, leaf_size: int, max_depth: int) -> str | None: ...
+
+    def levels(self) -> list[tuple[int, int, float]]: ...
+
+class TreeBuilder:
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.uint32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], fit: Fit, split: Split, leaf_size: int, max_depth: int) -> None: ...
+
+    def advance(self, work: int) -> bool: ...
+
+    def progress(self) -> float: ...
+
+    def finish(self) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None, 64), writable=False)], Annotated[NDArray[numpy.uint32], dict(shape=(None,), writable=False)], int]: ...
+
+class StaticQuery:
+    def __init__(self, a: Tree, rotation_a: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', writable=False)], translation_a: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C', writable=False)], b: Tree, rotation_b: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', writable=False)], translation_b: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C', writable=False)], *, all_pairs: bool, boxes_for_leaves: bool, max_depth_a: int, max_depth_b: int, limit: int) -> None: ...
+
+    def advance(self, max_pops: int) -> bool: ...
+
+    def pairs(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, 2), writable=False)]: ...
+
+    @property
+    def is_contact(self) -> bool: ...
+
+    @property
+    def is_by_boxes(self) -> bool: ...
+
+    @property
+    def error_bound(self) -> float: ...
+
+    @property
+    def box_tests(self) -> int: ...
+
+    @property
+    def triangle_tests(self) -> int: ...
+
+    @property
+    def exact_triangle_tests(self) -> int: ...
+
+    @property
+    def pops(self) -> int: ...

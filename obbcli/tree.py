@@ -1,0 +1,364 @@
+"""`ObbTree`: a mesh under oriented boxes, built, saved, opened and proven. Eberly 2008 §6."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+
+import numpy as np
+
+from obbcli import __version__, kernels, treefile
+from obbcli.errors import MeshError, TreeFileError
+from obbcli.mesh import Mesh, load_mesh
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+Fit = Literal["triangles", "points", "axis-aligned"]
+Split = Literal["median", "center"]
+
+_FITS = {
+    "triangles": kernels.Fit.TRIANGLES,
+    "points": kernels.Fit.POINTS,
+    "axis-aligned": kernels.Fit.AXIS_ALIGNED,
+}
+_SPLITS = {"median": kernels.Split.MEDIAN, "center": kernels.Split.CENTER}
+_NO_LIMIT = 2**32 - 1
+
+# A slice of a build between two looks at signals and progress: tens of milliseconds.
+_TRIANGLES_A_SLICE = 200_000
+# What a build holds at its peak: the moving triangles, keys and boxes; then the arrays of the tree.
+_BUILD_BYTES_A_TRIANGLE = 200
+
+
+class Level(NamedTuple):
+    """Boxes of one depth.
+
+    Attributes:
+        box_count: how many boxes there are.
+        leaf_count: how many nodes end here: leaves, and single triangles, which need no box.
+        volume: sum of the boxes' volumes, cubed mesh units; None where a double cannot hold it.
+    """
+
+    box_count: int
+    leaf_count: int
+    volume: float | None
+
+
+class ObbTree:
+    """A tree of oriented boxes over the triangles of a mesh.
+
+    Made by `build` or `open`. Immutable, and safe to share between threads.
+    """
+
+    def __init__(self, arrays: treefile.TreeArrays, path: Path | None = None) -> None:
+        self._arrays = arrays
+        self._path = path
+        try:
+            self._kernel = kernels.Tree(
+                arrays.vertices,
+                arrays.corners,
+                arrays.triangle_ids,
+                arrays.nodes,
+                arrays.scale_exponent,
+            )
+        except ValueError as fault:
+            raise TreeFileError(self._where, str(fault), "build it again") from fault
+
+    @classmethod
+    def build(
+        cls,
+        mesh_or_path: Mesh | str | os.PathLike[str],
+        fit: Fit = "triangles",
+        split: Split = "median",
+        leaf_size: int = 1,
+        max_depth: int | None = None,
+        lazy: bool = True,  # noqa: ARG003  # the contract's; the answers do not depend on it
+        *,
+        max_memory: int | None = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> ObbTree:
+        """Return a tree over a mesh.
+
+        Iterative, whatever the shape of the tree; the same mesh and options give the same bytes on
+        every machine. Between slices of the work other threads and signals get their turn.
+
+        Args:
+            mesh_or_path: the mesh, or the file to load it from.
+            fit: orients a box by the spread of its triangles' area (`"triangles"`, §6.1.3 with its
+                weights mended), of their corners (`"points"`, §6.1.2), or not at all
+                (`"axis-aligned"`).
+            split: parts a node across its longest axis at the median of the triangles' centroids,
+                or at the box's center, trying the next longest axes and at last the median (§6.2).
+            leaf_size: a node of so many triangles is not split.
+            max_depth: nodes this deep are not split; the root's depth is 0. None: no limit.
+            lazy: whether nodes may wait until a question needs them. The answers are the same
+                either way, and this version builds all of them at once.
+            max_memory: bytes that the build may need at its peak. None: no limit.
+            progress: called now and then with the share done, from 0 to 1.
+
+        Raises:
+            MeshError: the mesh cannot be read or is refused, an option is none of the above, or the
+                build would need more than `max_memory`.
+            OSError: the file cannot be read.
+        """
+        mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
+        _check_options(fit, split, leaf_size, max_depth)
+        _check_memory(mesh, max_memory)
+        builder = kernels.TreeBuilder(
+            mesh.vertices,
+            mesh.triangles.view(np.uint32),
+            _FITS[fit],
+            _SPLITS[split],
+            min(leaf_size, _NO_LIMIT),
+            _NO_LIMIT if max_depth is None else min(max_depth, _NO_LIMIT),
+        )
+        while not builder.advance(_TRIANGLES_A_SLICE):
+            if progress is not None:
+                progress(builder.progress())
+        nodes, triangle_ids, scale_exponent = builder.finish()
+        corners = mesh.triangles.view(np.uint32)[triangle_ids]
+        corners.setflags(write=False)
+        return cls(
+            treefile.TreeArrays(
+                nodes=nodes,
+                corners=corners,
+                triangle_ids=triangle_ids,
+                vertices=mesh.vertices,
+                scale_exponent=scale_exponent,
+                description=treefile.Description(
+                    fit=fit,
+                    split=split,
+                    leaf_size=int(leaf_size),
+                    max_depth=None if max_depth is None else int(max_depth),
+                    source=None if mesh.source is None else Path(mesh.source).name,
+                    source_sha256=mesh.sha256,
+                    tool_version=__version__,
+                ),
+            )
+        )
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str], verify: bool = True) -> ObbTree:
+        """Return the tree in a file.
+
+        Args:
+            path: a tree file (`.obbt`).
+            verify: whether the data's checksums are compared. Structure is checked all the same.
+
+        Raises:
+            TreeFileError: no tree file, another version, truncated or damaged.
+            OSError: the file cannot be read.
+        """
+        return cls(treefile.read_tree(path, verify=verify), Path(path))
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "bytes", verify: bool = True) -> ObbTree:
+        """Return the tree in the bytes of a tree file; `name` is the place named in errors.
+
+        Raises:
+            TreeFileError: as `open`.
+        """
+        return cls(treefile.parse_tree(data, name, verify=verify))
+
+    def save(self, path: str | os.PathLike[str]) -> int:
+        """Write the tree to a file, whole or not at all, and return the file's size in bytes.
+
+        Raises:
+            OSError: the place cannot be written to.
+        """
+        return treefile.write_tree(path, self._arrays)
+
+    def check(self) -> None:
+        """Prove the tree: checksums, structure, and every triangle inside all boxes above it.
+
+        O(n depth). Containment is proven with the rounding of the proof counted against the box.
+
+        Raises:
+            TreeFileError: it is not what it claims to be; the message names the first fault.
+            OSError: the file that the tree was opened from can no longer be read.
+        """
+        if self._path is not None:
+            treefile.read_tree(self._path, verify=True)
+        depth = self.max_depth
+        fault = self._kernel.check(
+            min(self.leaf_size, _NO_LIMIT), _NO_LIMIT if depth is None else min(depth, _NO_LIMIT)
+        )
+        if fault is not None:
+            raise TreeFileError(self._where, fault, "build it again from the mesh")
+
+    @property
+    def _where(self) -> str:
+        return str(self._path or self.source or "tree")
+
+    @property
+    def kernel(self) -> kernels.Tree:
+        """The arrays as the kernels see them."""
+        return self._kernel
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices as the mesh has them, float64 (V, 3), read-only."""
+        return self._arrays.vertices
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh, its triangles in file order."""
+        triangles = np.empty((self.triangle_count, 3), np.uint32)
+        ids = self._arrays.triangle_ids
+        if int(ids.max()) >= len(triangles):
+            raise TreeFileError(self._where, "a triangle id is out of range", "build it again")
+        triangles[ids] = self._arrays.corners
+        return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lower and upper corner of the mesh's axis-aligned box, (2, 3), mesh units."""
+        return self.mesh.bounds
+
+    @property
+    def size(self) -> float:
+        """Diagonal of `bounds`, mesh units."""
+        return self.mesh.size
+
+    @property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """Area-weighted centroid of the surface, (3,): the default pivot."""
+        return self.mesh.surface_centroid
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles the mesh has."""
+        return len(self._arrays.corners)
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices the mesh has."""
+        return len(self._arrays.vertices)
+
+    @property
+    def node_count(self) -> int:
+        """How many boxes there are; a single triangle needs none."""
+        return len(self._arrays.nodes)
+
+    @property
+    def possible_node_count(self) -> int:
+        """How many boxes the tree has when it is whole."""
+        return len(self._arrays.nodes)
+
+    @cached_property
+    def levels(self) -> tuple[Level, ...]:
+        """What stands at each depth, the root's first."""
+        # In two steps, since the cube of the unit may leave the range of double.
+        cube = 3 * self._arrays.scale_exponent
+        try:
+            found = self._kernel.levels()
+        except kernels.TreeError as fault:
+            raise TreeFileError(self._where, str(fault), "build it again") from fault
+        return tuple(
+            Level(boxes, leaves, _ldexp_or_none(volume, cube)) for boxes, leaves, volume in found
+        )
+
+    @property
+    def fit(self) -> str:
+        """How boxes were oriented."""
+        return self._arrays.description.fit
+
+    @property
+    def split(self) -> str:
+        """How nodes were parted."""
+        return self._arrays.description.split
+
+    @property
+    def leaf_size(self) -> int:
+        """A node of so many triangles is a leaf."""
+        return self._arrays.description.leaf_size
+
+    @property
+    def max_depth(self) -> int | None:
+        """The depth at which a node is a leaf; None: no limit."""
+        return self._arrays.description.max_depth
+
+    @property
+    def source(self) -> str | None:
+        """Name of the mesh file, or None for a mesh made in code."""
+        return self._arrays.description.source
+
+    @property
+    def source_sha256(self) -> str | None:
+        """SHA-256 of the mesh file's bytes, or None."""
+        return self._arrays.description.source_sha256
+
+    @property
+    def tool_version(self) -> str:
+        """Version of the obbtree that built the tree."""
+        return self._arrays.description.tool_version
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the tree's arrays, its triangles and vertices among them."""
+        a = self._arrays
+        return a.nodes.nbytes + a.corners.nbytes + a.triangle_ids.nbytes + a.vertices.nbytes
+
+    def __repr__(self) -> str:
+        return f"ObbTree({self.triangle_count} triangles, {self.node_count} boxes)"
+
+
+def load_tree(path: str | os.PathLike[str], *, verify: bool = True) -> ObbTree:
+    """Return the tree in a tree file, or one built with default options over a mesh file.
+
+    Tree files are told by their first bytes, whatever their name.
+
+    Raises:
+        MeshError: the mesh cannot be read or is refused.
+        TreeFileError: the tree file is damaged.
+        OSError: the file cannot be read.
+    """
+    if _begins_as_tree(Path(path)):
+        return ObbTree.open(path, verify=verify)
+    return ObbTree.build(path)
+
+
+def _begins_as_tree(path: Path) -> bool:
+    """Return whether a file claims to be a tree file; faults are left to its reader."""
+    if path.suffix.lower() == ".obbt":
+        return True
+    try:
+        with path.open("rb") as file:
+            return treefile.is_tree_file(file.read(len(treefile.MAGIC)))
+    except OSError:
+        return False
+
+
+def _check_options(fit: str, split: str, leaf_size: int, max_depth: int | None) -> None:
+    if fit not in _FITS:
+        raise MeshError("fit", f"is {fit!r}", "use one of " + ", ".join(get_args(Fit)))
+    if split not in _SPLITS:
+        raise MeshError("split", f"is {split!r}", "use one of " + ", ".join(get_args(Split)))
+    if isinstance(leaf_size, bool) or not isinstance(leaf_size, (int, np.integer)) or leaf_size < 1:
+        raise MeshError("leaf_size", f"is {leaf_size!r}", "use a whole number of at least 1")
+    if max_depth is not None and (
+        isinstance(max_depth, bool) or not isinstance(max_depth, (int, np.integer)) or max_depth < 0
+    ):
+        raise MeshError("max_depth", f"is {max_depth!r}", "use a whole number of at least 0")
+
+
+def _check_memory(mesh: Mesh, max_memory: int | None) -> None:
+    needed = _BUILD_BYTES_A_TRIANGLE * len(mesh.triangles) + mesh.vertices.nbytes
+    if max_memory is not None and needed > max_memory:
+        raise MeshError(
+            mesh.source or "mesh",
+            f"a build over {len(mesh.triangles)} triangles needs about {needed} bytes, "
+            f"{max_memory} are allowed",
+            "allow more, or split the mesh",
+        )
+
+
+def _ldexp_or_none(value: float, exponent: int) -> float | None:
+    """Return value times 2^exponent, or None where it leaves the range of double."""
+    result = float(np.ldexp(np.ldexp(value, exponent // 2), exponent - exponent // 2))
+    return result if np.isfinite(result) else None
