@@ -1,4 +1,4 @@
-"""The only checks of shapes, types and finiteness: arrays that pass here may cross into the kernels."""
+"""The only checks of shapes, types and finiteness: what passes here may cross into the kernels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def as_floats(
         error: the class raised.
 
     Raises:
-        error: not numbers, another shape, or a value that is not finite (the first such place is named).
+        error: not numbers, another shape, or a value that is not finite (the first is named).
     """
     wanted = "(" + ", ".join("N" if n is None else str(n) for n in shape) + ")"
     try:

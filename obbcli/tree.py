@@ -208,11 +208,11 @@ class ObbTree:
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh, its triangles in file order."""
-        triangles = np.empty((self.triangle_count, 3), np.uint32)
+        triangles = np.empty((self.triangle_count, 3), np.int32)
         ids = self._arrays.triangle_ids
         if int(ids.max()) >= len(triangles):
             raise TreeFileError(self._where, "a triangle id is out of range", "build it again")
-        triangles[ids] = self._arrays.corners
+        triangles[ids] = self._arrays.corners.view(np.int32)
         return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
 
     @property

@@ -129,7 +129,7 @@ def read_tree(path: str | os.PathLike[str], *, verify: bool = True) -> TreeArray
         size = os.fstat(file.fileno()).st_size
         # Aligned as the kernels want the boxes to be.
         buffer = _aligned_bytes(size)
-        found = file.readinto(memoryview(buffer))
+        found = file.readinto(buffer.data)
     if found != size:
         raise TreeFileError(str(path), f"ends at byte {found} of {size}", "was it being written?")
     return parse_tree(buffer, str(path), verify=verify)
@@ -145,10 +145,10 @@ def parse_tree(buffer: NDArray[np.uint8] | bytes, name: str, *, verify: bool = T
         aligned = _aligned_bytes(len(buffer))
         aligned[:] = np.frombuffer(buffer, np.uint8)
         buffer = aligned
-    header = _checked_header(memoryview(buffer), name)
+    header = _checked_header(buffer.data, name)
     data = buffer[header.header_bytes :]
     if verify:
-        _verify_blocks(memoryview(data), header.block_crcs, name)
+        _verify_blocks(data.data, header.block_crcs, name)
     arrays = []
     start = 0
     for length in header.section_bytes:
@@ -225,7 +225,7 @@ def _checked_header(data: memoryview, name: str) -> _Header:
 def _description(text: bytes, name: str) -> Description:
     """Return the description, whose every field must be there and of its type."""
     optional_text, optional_number = (str, type(None)), (int, type(None))
-    types = {
+    types: dict[str, type | tuple[type, ...]] = {
         "fit": str,
         "split": str,
         "leaf_size": int,
