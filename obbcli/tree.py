@@ -318,12 +318,12 @@ def load_tree(path: str | os.PathLike[str], *, verify: bool = True) -> ObbTree:
         TreeFileError: the tree file is damaged.
         OSError: the file cannot be read.
     """
-    if _begins_as_tree(Path(path)):
+    if begins_as_tree(Path(path)):
         return ObbTree.open(path, verify=verify)
     return ObbTree.build(path)
 
 
-def _begins_as_tree(path: Path) -> bool:
+def begins_as_tree(path: Path) -> bool:
     """Return whether a file claims to be a tree file; faults are left to its reader."""
     if path.suffix.lower() == ".obbt":
         return True
