@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,28 +13,100 @@ from obbcli.mesh.source import Source, checked_source, digest_of, read_source
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Callable
 
-#: Suffix: (format, module of this package, function). Modules are imported when first needed.
-_READERS: dict[str, tuple[str, str, str]] = {
-    ".stl": ("STL", "stl", "read_stl"),
-    ".obj": ("OBJ", "obj", "read_obj"),
+    from obbcli.mesh.source import MeshArrays
+
+
+@dataclass(frozen=True)
+class _Format:
+    """Holds a format's name and reader.
+
+    Args:
+        name: as people call it.
+        module: of this package, imported when first needed, or `cells` for meshio's formats.
+        kind: meshio's module of the format; None where the reader is ours.
+    """
+
+    name: str
+    module: str
+    kind: str | None = None
+
+
+_STL = _Format("STL", "stl")
+_OBJ = _Format("OBJ", "obj")
+_PLY = _Format("PLY", "ply")
+_OFF = _Format("OFF", "off")
+_GLTF = _Format("glTF", "gltf")
+_VTK = _Format("VTK", "cells", "vtk")
+_VTU = _Format("VTU", "cells", "vtu")
+_GMSH = _Format("Gmsh", "cells", "gmsh")
+_NASTRAN = _Format("Nastran", "cells", "nastran")
+_MEDIT = _Format("Medit", "cells", "medit")
+_TECPLOT = _Format("Tecplot", "cells", "tecplot")
+
+#: The one table of suffixes. Those of our own readers first, then what goes through meshio.
+_FORMATS = {
+    ".stl": _STL,
+    ".obj": _OBJ,
+    ".ply": _PLY,
+    ".off": _OFF,
+    ".glb": _GLTF,
+    ".gltf": _GLTF,
+    ".vtk": _VTK,
+    ".vtu": _VTU,
+    ".msh": _GMSH,
+    ".inp": _Format("Abaqus", "cells", "abaqus"),
+    ".avs": _Format("AVS-UCD", "cells", "avsucd"),
+    ".bdf": _NASTRAN,
+    ".fem": _NASTRAN,
+    ".nas": _NASTRAN,
+    ".mesh": _MEDIT,
+    ".meshb": _MEDIT,
+    ".vol": _Format("Netgen", "cells", "netgen"),
+    ".su2": _Format("SU2", "cells", "su2"),
+    ".dat": _TECPLOT,
+    ".tec": _TECPLOT,
+    ".f3grid": _Format("FLAC3D", "cells", "flac3d"),
+    ".mdpa": _Format("MDPA", "cells", "mdpa"),
+    ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
 }
+
+#: How files of other formats begin, to say what a file is that is not what its name says.
+_BEGINNINGS = (
+    (b"ply", "a PLY file (.ply)"),
+    (b"glTF", "a GLB file (.glb)"),
+    (b"solid", "an ASCII STL file (.stl)"),
+    (b"OFF", "an OFF file (.off)"),
+    (b"# vtk DataFile", "a VTK file (.vtk)"),
+    (b"$MeshFormat", "a Gmsh file (.msh)"),
+    (b"<VTKFile", "a VTU file (.vtu)"),
+    (b"<?xml", "XML"),
+    (b"PK\x03\x04", "a zip archive, which is not opened"),
+    (b"\x1f\x8b", "a gzip archive, which is not opened"),
+    (b"\x89HDF", "an HDF5 file, which is not read"),
+    (b"OBBTREE", "a tree file (.obbt)"),
+    (b"ISO-10303", "a STEP file, which is no mesh"),
+)
 
 
 def known_suffixes() -> tuple[str, ...]:
     """Return the suffixes that can be read, sorted."""
-    return tuple(sorted(_READERS))
+    return tuple(sorted(_FORMATS))
 
 
 def load_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Return the mesh in a file: its suffix says which format is expected.
+    """Return the mesh in a file: its suffix, in any case, says which format is expected.
+
+    Triangle ids are rows of the file's faces after triangulation, in the file's order; polygons
+    become fans about their first corner, cells the faces that `boundary.surface` lists.
 
     Raises:
         MeshError: it cannot be read, is not what its name says, or holds no usable surface.
     """
     path = Path(path)
-    _reader(str(path), path.suffix)
-    return _load(read_source(path), path.suffix)
+    read = _reader(str(path), path.suffix)
+    return _load(read_source(path), path.suffix, read)
 
 
 def load_mesh_bytes(data: bytes, suffix: str, *, name: str = "<stdin>") -> Mesh:
@@ -42,28 +115,51 @@ def load_mesh_bytes(data: bytes, suffix: str, *, name: str = "<stdin>") -> Mesh:
     Raises:
         MeshError: as in `load_mesh`; `name` is the place named.
     """
-    return _load(checked_source(Source(name, name, data)), suffix)
+    read = _reader(name, suffix)
+    return _load(checked_source(Source(name, name, bytes(data))), suffix, read)
 
 
-def _reader(place: str, suffix: str) -> tuple[str, str, str]:
-    reader = _READERS.get(suffix.lower())
-    if reader is None:
+def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
+    """Return the reader of files with a suffix."""
+    form = _FORMATS.get(suffix.lower())
+    if form is None:
         known = " ".join(known_suffixes())
         fault = f"unknown mesh suffix '{suffix}'" if suffix else "has no suffix to tell its format"
         raise MeshError(place, fault, f"known are {known}")
+    module = import_module(f"obbcli.mesh.{form.module}")
+    if form.kind is not None:
+        reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix.lower())
+    else:
+        reader = getattr(module, f"read_{form.module}")
     return reader
 
 
-def _load(source: Source, suffix: str) -> Mesh:
-    _, module, function = _reader(source.place, suffix)
-    read = getattr(import_module(f"obbcli.mesh.{module}"), function)
+def _load(source: Source, suffix: str, read: Callable[[Source], MeshArrays]) -> Mesh:
     digest = digest_of(source.data)
     try:
         vertices, triangles = read(source)
+        if len(triangles) == 0:
+            raise source.error("has no faces", "a mesh is a surface of triangles")
+    except MeshError as fault:
+        raise _with_guess(source, suffix, fault) from fault.__cause__
+    except MemoryError as fault:
+        raise source.error("does not fit into memory") from fault
     finally:
         sha256 = digest()
-    if len(triangles) == 0:
-        raise source.error("has no faces", "a mesh is a surface of triangles")
+    # Read-only arrays are adopted, not copied.
     vertices.setflags(write=False)
     triangles.setflags(write=False)
-    return Mesh(vertices, triangles, source=source.name, sha256=sha256)
+    try:
+        return Mesh(vertices, triangles, source=source.name, sha256=sha256)
+    except MeshError as fault:
+        where = fault.where.replace(source.name, source.place, 1)
+        raise MeshError(where, fault.fault, fault.remedy) from fault
+
+
+def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
+    """Return the error, with what the file seems to be where that is not what its name says."""
+    start = source.data.lstrip()[:64].lower()
+    for beginning, guess in _BEGINNINGS:
+        if start.startswith(beginning.lower()) and f"({suffix.lower()})" not in guess:
+            return MeshError(fault.where, fault.fault, f"the file looks like {guess}")
+    return fault

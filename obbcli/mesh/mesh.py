@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 MAX_COUNT = 2**31 - 1
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Mesh:
     """Holds a surface: vertices and the triangles between them, checked and read-only.
 
@@ -38,15 +38,24 @@ class Mesh:
 
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int32]
-    source: str | None = None
-    sha256: str | None = None
+    source: str | None
+    sha256: str | None
 
-    def __post_init__(self) -> None:
-        prefix = f"{self.source}: " if self.source else ""
-        vertices = _checked_vertices(self.vertices, prefix)
-        triangles = _checked_triangles(self.triangles, len(vertices), prefix)
-        object.__setattr__(self, "vertices", vertices)
-        object.__setattr__(self, "triangles", triangles)
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        source: str | None = None,
+        sha256: str | None = None,
+    ) -> None:
+        prefix = f"{source}: " if source else ""
+        checked = _checked_vertices(vertices, prefix)
+        # The dataclass is frozen to everybody else.
+        put = object.__setattr__
+        put(self, "vertices", checked)
+        put(self, "triangles", _checked_triangles(triangles, len(checked), prefix))
+        put(self, "source", source)
+        put(self, "sha256", sha256)
 
     def __repr__(self) -> str:
         source = f", source={self.source!r}" if self.source else ""

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from obbcli.mesh.source import Source
 
 _UTF8_MARK = b"\xef\xbb\xbf"
@@ -43,3 +48,28 @@ def whole(source: Source, word: bytes, line: int, what: str) -> int:
     except ValueError as fault:
         shown = word.decode("latin-1")
         raise source.error(f"{what} '{shown}' is not a whole number", at=str(line)) from fault
+
+
+def uniform_rows(rows: list[list[bytes]], width: int) -> list[bytes] | None:
+    """Return the words of all rows in one list where each has `width` words, or None."""
+    if set(map(len, rows)) - {width}:
+        return None
+    return list(chain.from_iterable(rows))
+
+
+def all_numbers(words: list[bytes]) -> NDArray[np.float64] | None:
+    """Return all words as finite numbers, or None where one is not: its reader then says which."""
+    try:
+        values = np.array(list(map(float, words)), dtype=np.float64)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() and b"_" not in b"".join(words) else None
+
+
+def all_whole(words: list[bytes]) -> NDArray[np.int64] | None:
+    """Return all words as whole numbers, or None where one is not."""
+    try:
+        values = np.array(list(map(int, words)), dtype=np.int64)
+    except (ValueError, OverflowError):
+        return None
+    return None if b"_" in b"".join(words) else values

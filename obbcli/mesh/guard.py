@@ -1,0 +1,82 @@
+"""A fence around a library's reader: its errors become ours, its prints and appetites stay inside.
+
+Readers of the wild end the process, print, recurse and reserve what a header claims.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import sys
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from obbcli.mesh.source import Source
+
+Result = TypeVar("Result")
+
+#: What a reader may take beside a multiple of the file's size: NumPy and XML trees cost so much.
+_LEAST_ROOM = 1 << 30
+_ROOM_PER_BYTE = 64
+#: NumPy's words where numbers end early in a text, which libraries take for the end of the data.
+_CUT_SHORT = "string or file could not be read to its end"
+
+
+def fenced(source: Source, library: str, read: Callable[[], Result]) -> Result:
+    """Return what `read` returns; whatever it raises becomes a MeshError with the library's words.
+
+    KeyboardInterrupt and the like pass. Output and warnings are swallowed; memory is bounded by
+    the file's size where the system can do so.
+
+    Raises:
+        MeshError: the reader raised, called `sys.exit`, recursed too deep or ran out of its room.
+    """
+    printed = io.StringIO()
+    try:
+        with (
+            contextlib.redirect_stdout(printed),
+            contextlib.redirect_stderr(printed),
+            warnings.catch_warnings(),
+            _bounded_memory(_LEAST_ROOM + _ROOM_PER_BYTE * len(source.data)),
+        ):
+            warnings.simplefilter("ignore")
+            warnings.filterwarnings("error", message=_CUT_SHORT)
+            return read()
+    except MemoryError as fault:
+        raise source.error(
+            "claims more than the file can hold (out of memory)", "its counts are wrong"
+        ) from fault
+    except ImportError as fault:
+        raise source.error(f"needs a package that is missing: {fault}", "install it") from fault
+    except (Exception, SystemExit) as fault:
+        words = " ".join(f"{fault} {printed.getvalue()}".split())[:300]
+        kind = type(fault).__name__
+        raise source.error(
+            f"{library} cannot read it: {kind}: {words}", "export it again or in another format"
+        ) from fault
+
+
+@contextlib.contextmanager
+def _bounded_memory(room: int) -> Iterator[None]:
+    """Let the process grow by at most `room` bytes meanwhile; where /proc is missing, do nothing.
+
+    A count of billions then fails at once instead of being written to until the system gives up.
+    """
+    statm = Path("/proc/self/statm")
+    if not sys.platform.startswith("linux") or not statm.exists():
+        yield
+        return
+    import resource
+
+    used = int(statm.read_text().split()[0]) * resource.getpagesize()
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    limits = [used + room, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
+    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
