@@ -1,0 +1,85 @@
+"""Do two triangle meshes touch, and where? Trees of oriented boxes, exact answers, plain files.
+
+Names are loaded when first used (PEP 562): a bare `import obbcli` imports no NumPy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
+    from obbcli.errors import (
+        MeshError,
+        MotionError,
+        ObbError,
+        SceneError,
+        TreeFileError,
+        UnresolvedError,
+    )
+    from obbcli.mesh import Mesh, load_mesh
+    from obbcli.motion import Body, Motion, Pose
+    from obbcli.query import collide, triangle_pairs
+    from obbcli.results import Collision, QueryStats, Status
+    from obbcli.tree import ObbTree
+
+# A literal, because asking the installed metadata costs three times a bare interpreter's start.
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Accuracy": "accuracy",
+    "Body": "motion",
+    "Collision": "results",
+    "Mesh": "mesh",
+    "MeshError": "errors",
+    "Motion": "motion",
+    "MotionError": "errors",
+    "ObbError": "errors",
+    "ObbTree": "tree",
+    "Pose": "motion",
+    "QueryStats": "results",
+    "SceneError": "errors",
+    "Status": "results",
+    "TreeFileError": "errors",
+    "UnresolvedError": "errors",
+    "collide": "query",
+    "load_mesh": "mesh",
+    "triangle_pairs": "query",
+}
+
+__all__ = [
+    "Accuracy",
+    "Body",
+    "Collision",
+    "Mesh",
+    "MeshError",
+    "Motion",
+    "MotionError",
+    "ObbError",
+    "ObbTree",
+    "Pose",
+    "QueryStats",
+    "SceneError",
+    "Status",
+    "TreeFileError",
+    "UnresolvedError",
+    "__version__",
+    "collide",
+    "load_mesh",
+    "triangle_pairs",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name from the module it lives in, once."""
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value: object = getattr(import_module(f"{__name__}.{home}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

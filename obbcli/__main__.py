@@ -1,0 +1,8 @@
+"""Runs the command line as `python -m obbcli`."""
+
+from __future__ import annotations
+
+from obbcli.cli import main
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,39 @@
+"""The shell's side of the tool: parse, call, render. One command a file.
+
+Exit codes and what goes to which stream are in `boundary`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from obbcli.cli.app import app
+from obbcli.cli.boundary import guarded
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+PROGRAM = "obbtree"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code; never raises, never prints a stray traceback.
+
+    Args:
+        arguments: the words after the program's name. None: those of this process.
+    """
+    # No command calls BLAS, and starting its threads costs a tenth of NumPy's import.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if "_OBBTREE_COMPLETE" in os.environ:
+        # The shell asks for completions: click answers and exits by itself.
+        app.main(words, prog_name=PROGRAM)
+    return guarded(lambda: run(words), words)
+
+
+def run(words: list[str]) -> int:
+    """Parse and run one command; return its exit code."""
+    with app.make_context(PROGRAM, words) as context:
+        return int(app.invoke(context) or 0)

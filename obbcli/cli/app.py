@@ -1,0 +1,60 @@
+"""The `obbtree` command itself: its subcommands, imported when first named, and its help."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import click
+
+from obbcli import __version__
+from obbcli.cli.options import GuardedHelp
+from obbcli.cli.output import write_stdout
+
+# Name: module of this package; in the order a newcomer meets them.
+_COMMANDS = {
+    "collide": "collide",
+    "build": "build",
+    "info": "info",
+}
+
+_WELCOME = """\
+obbtree: do these two triangle meshes touch?
+
+  obbtree collide gear.stl shaft.obj     do they touch, and which triangles?
+  obbtree info gear.stl                  what is in a mesh or tree file
+  obbtree build gear.stl                 keep the tree for later: gear.obbt
+
+Any command with --help tells the rest; obbtree --help lists all commands.
+"""
+
+
+class _App(GuardedHelp, click.Group):
+    """Imports a command's module only when that command is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002  # click's signature
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return super().get_command(ctx, cmd_name)
+        module = import_module(f"obbcli.cli.{_COMMANDS[cmd_name]}")
+        command: click.Command = module.command
+        return command
+
+
+@click.group(
+    cls=_App,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(__version__, "-V", "--version", message="%(prog)s %(version)s")
+@click.pass_context
+def app(context: click.Context) -> int:
+    """Do two triangle meshes touch, and where? Exact answers from any mesh files.
+
+    Meshes: STL, OBJ, PLY, OFF, glTF, VTK, Gmsh, Abaqus and more; trees: .obbt, made by build.
+    Lengths are in the meshes' own unit, angles in radians unless --degrees is given.
+    """
+    if context.invoked_subcommand is None:
+        write_stdout(_WELCOME)
+    return 0

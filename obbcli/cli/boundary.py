@@ -1,0 +1,163 @@
+"""The one error boundary: every fault becomes one line (or one JSON object) and an exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import traceback
+from contextlib import contextmanager
+from enum import IntEnum
+from typing import TYPE_CHECKING, TextIO
+
+import click
+
+from obbcli.errors import ObbError, UnresolvedError
+from obbcli.report.record import error_part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+
+class ExitCode(IntEnum):
+    """What a command's end says to the shell; of several that apply the highest wins."""
+
+    ANSWERED = 0
+    CONTACT = 1
+    USAGE = 2
+    INPUT = 3
+    UNRESOLVED = 4
+    OUTPUT = 5
+    INTERNAL = 70
+    INTERRUPTED = 130
+
+
+class OutputError(ObbError):
+    """An output cannot be written."""
+
+
+class UsageError(ObbError):
+    """The command line asks for what cannot be asked, or not yet."""
+
+
+class InternalError(ObbError):
+    """A fault of the tool itself."""
+
+
+class CancelledError(ObbError):
+    """Ctrl-C."""
+
+
+def guarded(command: Callable[[], int], words: Sequence[str]) -> int:
+    """Run a command, report whatever it raises, and return the exit code.
+
+    Args:
+        command: returns its exit code.
+        words: the command line: `--json` shapes errors, `--debug` adds a traceback.
+    """
+    try:
+        code = command()
+        with writing_stdout():
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    except (Exception, KeyboardInterrupt) as fault:  # noqa: BLE001  # the boundary
+        if "--debug" in words:
+            traceback.print_exc()
+        return report(as_error(fault), as_json="--json" in words)
+    return code
+
+
+def report(error: ObbError, *, as_json: bool) -> ExitCode:
+    """Write an error to stderr and return its exit code."""
+    code = exit_code(error)
+    if as_json:
+        text = json.dumps(error_part(error, int(code)))
+    else:
+        text = f"error: {error}" if error.where else f"error: {error.fault}; {error.remedy}"
+    note(text)
+    return code
+
+
+def note(text: str) -> None:
+    """Write one line to stderr; a reader that has gone away is no fault."""
+    if sys.stderr is None:
+        return
+    try:
+        print(text, file=sys.stderr, flush=True)  # noqa: T201  # the one place that does
+    except BrokenPipeError:
+        _silence(sys.stderr)
+
+
+def exit_code(error: ObbError) -> ExitCode:
+    """Return the exit code of an error."""
+    codes = (
+        (UsageError, ExitCode.USAGE),
+        (OutputError, ExitCode.OUTPUT),
+        (UnresolvedError, ExitCode.UNRESOLVED),
+        (InternalError, ExitCode.INTERNAL),
+        (CancelledError, ExitCode.INTERRUPTED),
+    )
+    return next((code for kind, code in codes if isinstance(error, kind)), ExitCode.INPUT)
+
+
+def as_error(fault: BaseException) -> ObbError:
+    """Return any fault as an error that names place, fault and remedy."""
+    if isinstance(fault, ObbError):
+        return fault
+    if isinstance(fault, (KeyboardInterrupt, click.Abort)):
+        return CancelledError("", "interrupted", "nothing was left half written")
+    if isinstance(fault, click.ClickException):
+        return _usage_error(fault)
+    if isinstance(fault, OSError):
+        return ObbError(str(fault.filename or "input"), fault.strerror or str(fault))
+    if isinstance(fault, MemoryError):
+        return ObbError("memory", "not enough for this input", "use a smaller mesh")
+    text = f"{type(fault).__name__}: {fault}".replace("\n", " ")
+    return InternalError("internal error", text, "run again with --debug and report the traceback")
+
+
+def _usage_error(fault: click.ClickException) -> UsageError:
+    """Return click's complaint in our words' order: place, fault, remedy."""
+    context = getattr(fault, "ctx", None)
+    path = context.command_path if context is not None else "obbtree"
+    message = fault.format_message().replace("\n", " ").rstrip(".")
+    return UsageError(path, message, f"see '{path} --help'")
+
+
+@contextmanager
+def writing_stdout() -> Iterator[None]:
+    """Guard standard output: a closed pipe ends quietly, other faults are an `OutputError`."""
+    try:
+        yield
+    except BrokenPipeError:
+        _silence(sys.stdout)
+    except OSError as fault:
+        _silence(sys.stdout)
+        raise OutputError("standard output", f"cannot be written: {fault.strerror}") from fault
+
+
+@contextmanager
+def writing(path: object) -> Iterator[None]:
+    """Turn the faults of writing a file into an `OutputError` that names it."""
+    try:
+        yield
+    except OSError as fault:
+        reason = fault.strerror or str(fault)
+        raise OutputError(str(path), f"cannot be written: {reason}", _mend(fault)) from fault
+
+
+def _mend(fault: OSError) -> str:
+    if isinstance(fault, (FileNotFoundError, NotADirectoryError)):
+        return "create its folder first"
+    if isinstance(fault, PermissionError):
+        return "choose another place with -o"
+    return ""
+
+
+def _silence(stream: TextIO) -> None:
+    """Send what is still buffered nowhere, so that closing the stream cannot fail again."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, stream.fileno())
+    os.close(null)

@@ -1,0 +1,205 @@
+"""`obbtree build`: keep the trees of meshes in files."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from obbcli.cli.boundary import OutputError, UsageError, as_error, note, report, writing
+from obbcli.cli.inputs import STDIN, read_shape
+from obbcli.cli.options import Command, common_options, gathered, option
+from obbcli.cli.output import emit
+from obbcli.cli.progress import bar
+from obbcli.errors import MeshError, ObbError
+
+if TYPE_CHECKING:
+    from obbcli.cli.options import CommonOptions
+    from obbcli.mesh import Mesh
+    from obbcli.report.build import Built
+
+SUFFIX = ".obbt"
+FITS = ("triangles", "points", "axis-aligned")
+SPLITS = ("median", "center")
+_UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
+
+
+@dataclass(frozen=True)
+class BuildOptions:
+    """How trees are built, and whether files may be replaced."""
+
+    fit: Any
+    split: Any
+    leaf_size: int
+    max_depth: int | None
+    max_memory: int | None
+    force: bool
+
+
+def _bytes(context: click.Context, param: click.Parameter, text: str | None) -> int | None:
+    """Return a number of bytes from digits and an optional K, M, G or T (powers of 1024)."""
+    if text is None:
+        return None
+    unit = text[-1:].upper() if text[-1:].isalpha() else ""
+    digits = text[: len(text) - len(unit)]
+    if unit not in _UNITS or not (digits.isascii() and digits.isdigit()):
+        fault = f"{text!r} is no number of bytes, such as 500M or 2G"
+        raise click.BadParameter(fault, ctx=context, param=param)
+    return int(digits) * _UNITS[unit]
+
+
+_TREE = "Tree"
+build_options = gathered(
+    "how",
+    BuildOptions,
+    (
+        option(
+            _TREE,
+            "--fit",
+            type=click.Choice(FITS),
+            default=FITS[0],
+            show_default=True,
+            help="Orient boxes by the triangles' areas, by their corners, or not at all.",
+        ),
+        option(
+            _TREE,
+            "--split",
+            type=click.Choice(SPLITS),
+            default=SPLITS[0],
+            show_default=True,
+            help="Part boxes at the median triangle or at their center.",
+        ),
+        option(
+            _TREE,
+            "--leaf-size",
+            type=click.IntRange(min=1),
+            default=1,
+            show_default=True,
+            metavar="N",
+            help="Do not split a box of N triangles.",
+        ),
+        option(
+            _TREE,
+            "--max-depth",
+            type=click.IntRange(min=0),
+            metavar="N",
+            help="Do not split boxes at level N [default: no limit].",
+        ),
+        option(
+            _TREE,
+            "--max-memory",
+            callback=_bytes,
+            metavar="BYTES",
+            help="Refuse a mesh whose build needs more, such as 500M or 2G [default: no limit].",
+        ),
+        option(_TREE, "--force", is_flag=True, help="Replace tree files that exist."),
+    ),
+)
+
+
+@click.command(
+    "build",
+    cls=Command,
+    short_help="Keep the trees of meshes in .obbt files.",
+    epilog="""\b
+Examples:
+  obbtree build gear.stl                    writes gear.obbt beside it
+  obbtree build *.stl -o trees/ --force
+  obbtree build scan.ply --leaf-size 4 -o coarse.obbt
+""",
+)
+@click.argument("meshes", metavar="MESH...", nargs=-1, required=True)
+@build_options
+@common_options("Write the tree to FILE, or the trees into DIR.", metavar="FILE|DIR")
+def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -> int:
+    """Build trees over meshes and keep them: gear.stl becomes gear.obbt.
+
+    A tree file holds everything that questions need. A mesh that cannot be read is reported, and
+    the others are built all the same.
+    """
+    from obbcli.report.build import build_record, build_tables
+
+    files: list[Built | ObbError] = []
+    code = 0
+    for name, target in _targets(meshes, common.output):
+        try:
+            files.append(_build(name, target, how, common))
+        except (ObbError, OSError, MemoryError) as fault:
+            files.append(as_error(fault))
+            code = max(code, report(as_error(fault), as_json=common.json))
+    built = sum(not isinstance(file, ObbError) for file in files)
+    if built:
+        record = build_record(meshes, files, _options_part(how))
+        emit(record, build_tables, replace(common, output=None), bare=lambda _: "")
+    if len(meshes) > 1 and built < len(meshes) and not common.quiet:
+        note(f"note: {len(meshes) - built} of {len(meshes)} trees were not built")
+    return code
+
+
+def _targets(meshes: tuple[str, ...], output: Path | None) -> list[tuple[str, Path]]:
+    """Return where each tree goes.
+
+    Raises:
+        UsageError: two trees would go to one place, or a place is missing.
+    """
+    if output is None and STDIN in meshes:
+        raise UsageError(STDIN, "standard input has no name to call its tree by", "add -o FILE")
+    if output is not None and not output.is_dir():
+        if len(meshes) > 1:
+            raise UsageError(f"-o {output}", "is not a directory", "create it, or build one mesh")
+        return [(meshes[0], output)]
+    targets = [
+        (output or Path(name).parent) / f"{'stdin' if name == STDIN else Path(name).stem}{SUFFIX}"
+        for name in meshes
+    ]
+    place, uses = Counter(targets).most_common(1)[0]
+    if uses > 1:
+        raise UsageError(str(place), f"would hold {uses} trees", "build them one by one with -o")
+    return list(zip(meshes, targets, strict=True))
+
+
+def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) -> Built:
+    """Build and save one tree."""
+    from obbcli.report.build import Built
+    from obbcli.tree import ObbTree
+
+    _require_free(target, force=how.force)
+    start = time.perf_counter()
+    mesh = _mesh(name)
+    loaded = time.perf_counter()
+    with bar(f"building {name}", len(mesh.triangles), wanted=common.shows_progress) as move:
+        options = _options_part(how)
+        tree = ObbTree.build(mesh, **options, lazy=False, max_memory=how.max_memory, progress=move)
+    ready = time.perf_counter()
+    with writing(target):
+        size = tree.save(target)
+    saved = time.perf_counter()
+    seconds = {"load": loaded - start, "build": ready - loaded, "save": saved - ready}
+    return Built(tree, str(target), size, seconds)
+
+
+def _require_free(target: Path, *, force: bool) -> None:
+    """Refuse to replace a file unasked, and anything but a file at all."""
+    if target.exists() and not target.is_file():
+        raise OutputError(str(target), "is not a file", "name a file with -o")
+    if target.exists() and not force:
+        raise OutputError(str(target), "exists already", "add --force to replace it")
+
+
+def _mesh(name: str) -> Mesh:
+    from obbcli.mesh import Mesh
+
+    shape, _ = read_shape(name, verify=True)
+    if not isinstance(shape, Mesh):
+        raise MeshError(name, "is a tree file already", "build from the mesh it was made of")
+    return shape
+
+
+def _options_part(how: BuildOptions) -> dict[str, Any]:
+    """Return what shaped the trees."""
+    names = ("fit", "split", "leaf_size", "max_depth")
+    return {name: getattr(how, name) for name in names}

@@ -1,0 +1,51 @@
+"""`obbtree info`: what a mesh or tree file holds."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import click
+
+from obbcli.cli.inputs import read_shape
+from obbcli.cli.options import Command, common_options, option, verify_option
+from obbcli.cli.output import emit
+
+if TYPE_CHECKING:
+    from obbcli.cli.options import CommonOptions
+
+
+@click.command(
+    "info",
+    cls=Command,
+    short_help="What a mesh or tree file holds.",
+    epilog="""\b
+Examples:
+  obbtree info gear.stl
+  obbtree info gear.obbt --check
+  obbtree info gear.obbt --json
+""",
+)
+@click.argument("file", metavar="FILE")
+@option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
+@verify_option
+@common_options()
+def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> int:
+    """Show what FILE holds: a mesh, or a tree with the mesh inside it.
+
+    Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
+    levels, how it was built, and whether the mesh file beside it has changed since. --check over a
+    mesh builds its tree and proves that.
+    """
+    from obbcli.mesh import Mesh
+    from obbcli.report.info import info_record, info_tables
+    from obbcli.tree import ObbTree
+
+    start = time.perf_counter()
+    shape, sha256 = read_shape(file, verify=not no_verify)
+    if check:
+        (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
+    record = info_record(file, shape, sha256, is_checked=check)
+    record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
+    emit(record, info_tables, common)
+    return 0

@@ -1,0 +1,163 @@
+"""Where shapes come from: a mesh file, a tree file, or either of them on standard input."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from obbcli.cli.boundary import UsageError
+from obbcli.cli.progress import bar
+from obbcli.errors import MeshError
+from obbcli.report.record import Source, file_sha256
+
+if TYPE_CHECKING:
+    from obbcli.mesh import Mesh
+    from obbcli.tree import ObbTree
+
+STDIN = "-"
+_STDIN_NAME = "<stdin>"
+
+# How a format shows itself in its first bytes; what none of them fits is read as STL.
+_SIGNATURES = (
+    (re.compile(rb"glTF"), ".glb"),
+    (re.compile(rb"ply\s"), ".ply"),
+    (re.compile(rb"(ST)?C?N?4?n?OFF\b"), ".off"),
+    (re.compile(rb"# vtk "), ".vtk"),
+    (re.compile(rb"\s*(<\?xml[^>]*>\s*)?<VTKFile"), ".vtu"),
+    (re.compile(rb"\$MeshFormat"), ".msh"),
+    (re.compile(rb"(\s*#[^\n]*\n|\s)*(v|vt|vn|o|g|s|mtllib|usemtl)[ \t]"), ".obj"),
+)
+_HEAD_BYTES = 1 << 16
+
+
+@dataclass(frozen=True)
+class Input:
+    """A shape that was read.
+
+    Attributes:
+        name: as the user wrote it; `-` for standard input.
+        tree: its tree.
+        sha256: of the bytes read, where they are known already.
+        seconds: s of wall time that reading and building took.
+    """
+
+    name: str
+    tree: ObbTree
+    sha256: str | None
+    seconds: float
+
+    def source(self, *, with_sha256: bool) -> Source:
+        """Return what a record says of it.
+
+        Raises:
+            OSError: the file is gone.
+        """
+        digest = self.sha256
+        if with_sha256 and digest is None:
+            digest = file_sha256(self.name)
+        return Source(self.name, digest, self.tree.triangle_count)
+
+
+def read_pair(a: str, b: str, *, verify: bool, progress: bool) -> tuple[Input, Input]:
+    """Return A and B as `read` does; one of them may be standard input.
+
+    Raises:
+        UsageError: both are.
+    """
+    if a == b == STDIN:
+        raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
+    first = read(a, verify=verify, progress=progress)
+    return first, first if a == b else read(b, verify=verify, progress=progress)
+
+
+def read(name: str, *, verify: bool, progress: bool) -> Input:
+    """Return a mesh or tree file with its tree, which is built over a mesh.
+
+    Args:
+        name: a path, or `-` for standard input.
+        verify: whether a tree file's checksums are compared.
+        progress: whether a bar may be drawn.
+
+    Raises:
+        MeshError: the mesh cannot be read or is refused.
+        TreeFileError: the tree file is damaged.
+        OSError: the file cannot be read.
+    """
+    from obbcli.mesh import Mesh
+    from obbcli.tree import ObbTree
+
+    start = time.perf_counter()
+    shape, sha256 = read_shape(name, verify=verify)
+    if isinstance(shape, Mesh):
+        with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
+            shape = ObbTree.build(shape, progress=move)
+    return Input(name, shape, sha256, time.perf_counter() - start)
+
+
+def read_shape(name: str, *, verify: bool) -> tuple[Mesh | ObbTree, str | None]:
+    """Return what a file or standard input holds, and the SHA-256 of its bytes where it is known.
+
+    Raises:
+        MeshError: the mesh cannot be read or is refused.
+        TreeFileError: the tree file is damaged.
+        OSError: the file cannot be read.
+    """
+    from obbcli.mesh import load_mesh, load_mesh_bytes
+    from obbcli.tree import ObbTree
+
+    data = _read_stdin() if name == STDIN else None
+    if _is_tree(name, data):
+        if data is None:
+            return ObbTree.open(name, verify=verify), None
+        tree = ObbTree.from_bytes(data, _STDIN_NAME, verify=verify)
+        return tree, hashlib.sha256(data).hexdigest()
+    if data is None:
+        mesh = load_mesh(name)
+    else:
+        mesh = load_mesh_bytes(data, _suffix(data), name=_STDIN_NAME)
+    return mesh, mesh.sha256
+
+
+def _is_tree(name: str, data: bytes | None) -> bool:
+    """Return whether an input is a tree, told by its first bytes or by its name's suffix."""
+    from obbcli.treefile import MAGIC, is_tree_file
+
+    if data is not None:
+        return is_tree_file(data)
+    path = Path(name)
+    if path.suffix.lower() == ".obbt":
+        return True
+    try:
+        # A pipe must not be opened to look: what is read once is gone.
+        if not path.is_file():
+            return False
+        with path.open("rb") as file:
+            return is_tree_file(file.read(len(MAGIC)))
+    except (OSError, ValueError):
+        # Left to the mesh's reader, who says it better.
+        return False
+
+
+def _read_stdin() -> bytes:
+    """Return all of standard input.
+
+    Raises:
+        MeshError: it is a terminal or closed.
+    """
+    if sys.stdin is None or sys.stdin.isatty():
+        raise MeshError(_STDIN_NAME, "is no file or pipe", "pipe a mesh into it, or name a file")
+    return sys.stdin.buffer.read()
+
+
+def _suffix(data: bytes) -> str:
+    """Return the suffix of the format that the first bytes show."""
+    head = data[:_HEAD_BYTES]
+    # A binary STL may begin with any text: its length tells it.
+    if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
+        return ".stl"
+    return next((suffix for signature, suffix in _SIGNATURES if signature.match(head)), ".stl")

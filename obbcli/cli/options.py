@@ -1,0 +1,158 @@
+"""How options are made here: typed, grouped in the help, gathered into one value a group.
+
+`@gathered("pose", PoseOptions, ...)` gives the command a `pose=PoseOptions(...)`: signatures name
+groups and not thirty options.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import click
+
+from obbcli.cli.boundary import writing_stdout
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Decorator: TypeAlias = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+_COMMON = "Common"
+
+
+class Finite(click.types.FloatParamType):
+    """A finite number, at least `minimum` where one is given."""
+
+    def __init__(self, minimum: float = -math.inf) -> None:
+        self.minimum = minimum
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number, or fail with what was found."""
+        number = float(super().convert(value, param, ctx))
+        if not (math.isfinite(number) and number >= self.minimum):
+            least = f" of at least {self.minimum:g}" if math.isfinite(self.minimum) else ""
+            self.fail(f"{value!r} is not a finite number{least}", param, ctx)
+        return number
+
+
+class GroupedOption(click.Option):
+    """An option that `--help` lists under a heading."""
+
+    def __init__(self, *args: Any, group: str, **attributes: Any) -> None:
+        super().__init__(*args, **attributes)
+        self.group = group
+
+
+class GuardedHelp(click.Command):
+    """Prints help and version, which happens while parsing, inside the guard of standard output."""
+
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        """Parse; a pipe closed while help was printed ends the command."""
+        with writing_stdout():
+            return super().make_context(*args, **extra)
+        raise click.exceptions.Exit(0)
+
+
+class Command(GuardedHelp):
+    """A command whose help lists options by group."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, one section a group, in the order of their first options."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for param in self.get_params(ctx):
+            # Arguments stand in the usage line and in the text above.
+            record = param.get_help_record(ctx) if isinstance(param, click.Option) else None
+            if record is not None:
+                groups.setdefault(getattr(param, "group", _COMMON), []).append(record)
+        for group, records in groups.items():
+            with formatter.section(group):
+                formatter.write_dl(records)
+
+
+def option(group: str, *names: str, **attributes: Any) -> Decorator:
+    """Return a click option that belongs to a group of the help."""
+    return click.option(*names, cls=GroupedOption, group=group, **attributes)
+
+
+def vector(group: str, name: str, text: str) -> Decorator:
+    """Return an option of three finite numbers; negative ones and exponents are numbers too."""
+    return option(group, name, nargs=3, type=Finite(), metavar="X Y Z", help=text)
+
+
+def gathered(name: str, cls: type, options: tuple[Decorator, ...]) -> Decorator:
+    """Return a decorator that adds options and passes them on as one value of `cls`."""
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(command)
+        def run(**values: Any) -> Any:
+            own = {field.name: values.pop(field.name) for field in fields(cls)}
+            return command(**values, **{name: cls(**own)})
+
+        wrapped: Callable[..., Any] = run
+        for add in reversed(options):
+            wrapped = add(wrapped)
+        return wrapped
+
+    return decorate
+
+
+@dataclass(frozen=True)
+class CommonOptions:
+    """How a command answers, whatever it is asked."""
+
+    json: bool
+    quiet: bool
+    no_progress: bool
+    output: Path | None
+
+    def __post_init__(self) -> None:
+        if self.output == Path("-"):
+            object.__setattr__(self, "output", None)
+
+    @property
+    def shows_progress(self) -> bool:
+        """Return whether bars may be drawn at all; they also need a terminal."""
+        return not (self.quiet or self.no_progress)
+
+
+def common_options(output: str = "Write the answer to FILE.", metavar: str = "FILE") -> Decorator:
+    """Return the options of every command; `output` and `metavar` are the help of `-o`."""
+    return gathered(
+        "common",
+        CommonOptions,
+        (
+            option(
+                _COMMON,
+                "-o",
+                "--output",
+                type=click.Path(path_type=Path),
+                metavar=metavar,
+                help=output,
+            ),
+            option(_COMMON, "--json", is_flag=True, help="Answer with one JSON document."),
+            option(_COMMON, "-q", "--quiet", is_flag=True, help="The bare answer, no notes."),
+            option(_COMMON, "--no-progress", is_flag=True, help="Draw no progress bar."),
+            option(
+                _COMMON,
+                "--debug",
+                is_flag=True,
+                expose_value=False,
+                help="Show the traceback of an error.",
+            ),
+        ),
+    )
+
+
+verify_option = option(
+    _COMMON,
+    "--no-verify",
+    is_flag=True,
+    help="Skip the checksums of tree files; their structure is checked all the same.",
+)

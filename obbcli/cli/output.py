@@ -1,0 +1,114 @@
+"""Where answers go: standard output or a file that is whole or not there."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+import tempfile
+from typing import TYPE_CHECKING, TextIO
+
+from obbcli.cli.boundary import OutputError, writing, writing_stdout
+from obbcli.report.document import to_json
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from obbcli.cli.options import CommonOptions
+    from obbcli.report.record import Record
+    from obbcli.report.table import Table
+
+
+def emit(
+    record: Record,
+    tables: Callable[[Record], Iterable[Table]],
+    common: CommonOptions,
+    bare: Callable[[Record], str] | None = None,
+) -> None:
+    """Write a record the way it was asked for.
+
+    Args:
+        record: the answer.
+        tables: what turns it into tables.
+        common: which way, and where to.
+        bare: what turns it into the little that `--quiet` shows; None shows the tables.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    if common.json:
+        text = to_json(record)
+    elif common.quiet and bare is not None:
+        text = bare(record)
+    else:
+        _draw(tables(record), common.output)
+        return
+    if common.output is None:
+        write_stdout(text)
+    else:
+        write_file(common.output, text)
+
+
+def write_stdout(text: str) -> None:
+    """Write text to standard output.
+
+    Raises:
+        OutputError: it is closed, or its disk is full.
+    """
+    with writing_stdout():
+        _stdout().write(text)
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write text to a file under a temporary name and rename it: whole or not there.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    path = path.resolve()
+    with writing(path):
+        if path.exists() and not path.is_file():
+            # A device or a pipe: there is nothing to rename, and it must not be replaced.
+            path.write_text(text, encoding="utf-8")
+            return
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+                file.write(text)
+            os.chmod(name, 0o666 & ~_umask())  # noqa: PTH101  # the name is a str all along
+            os.replace(name, path)  # noqa: PTH105
+        except BaseException:
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(name)  # noqa: PTH108
+            raise
+
+
+def _draw(tables: Iterable[Table], path: Path | None) -> None:
+    """Draw tables on standard output or into a file."""
+    from obbcli.report.table import draw
+
+    if path is not None:
+        text = io.StringIO()
+        draw(tables, text)
+        write_file(path, text.getvalue())
+        return
+    with writing_stdout():
+        draw(tables, _stdout())
+
+
+def _stdout() -> TextIO:
+    """Return standard output; names that its encoding cannot hold are escaped."""
+    if sys.stdout is None:
+        raise OutputError("standard output", "is closed", "use -o FILE")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+    return sys.stdout
+
+
+def _umask() -> int:
+    """Return the mask of new files, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

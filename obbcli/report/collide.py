@@ -1,0 +1,123 @@
+"""The record of `obbtree collide` and its table."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from obbcli.report.record import document, stats_part
+from obbcli.report.table import Table, count, length, seconds
+from obbcli.results import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.report.record import Record, Source
+    from obbcli.results import Collision
+
+_SENTENCES = {
+    "separated": "no contact",
+    "overlap_at_start": "in contact at t = 0",
+    "contact": "contact within the duration",
+    "unresolved": "a limit was reached before the answer was known",
+}
+
+
+def collide_record(
+    sources: Sequence[Source],
+    motion: Record,
+    accuracy: Accuracy,
+    answer: Collision,
+    pairs: tuple[NDArray[int64], bool] | None = None,
+) -> Record:
+    """Return the record of a question.
+
+    Args:
+        sources: the files of A and B.
+        motion: as `motion_part` gives it.
+        accuracy: as used.
+        answer: what came out.
+        pairs: intersecting pairs of triangles, (N, 2), and whether these are all; None where they
+            were not asked for.
+    """
+    unresolved = answer.status is Status.UNRESOLVED
+    result: Record = {
+        "status": answer.status.value,
+        "collides": None if unresolved else answer.collides,
+        "witness": None if answer.witness is None else [int(i) for i in answer.witness],
+        "approximate": answer.approximate,
+        "error_bound": float(answer.error_bound),
+    }
+    if pairs is not None:
+        result["pairs"] = pairs[0].tolist()
+        result["pairs_complete"] = pairs[1]
+    return document(
+        "collide",
+        dict(zip("ab", map(asdict, sources), strict=True)),
+        motion=motion,
+        accuracy=accuracy.as_dict(),
+        result=result,
+        stats=stats_part(answer.stats),
+    )
+
+
+def collide_tables(record: Record) -> list[Table]:
+    """Return the tables of a record: the answer, and the pairs where they were asked for."""
+    result, stats = record["result"], record["stats"]
+    rows = [
+        *(_source_row(name.upper(), record["inputs"][name]) for name in ("a", "b")),
+        ("status", result["status"]),
+        ("answer", _SENTENCES[result["status"]] + _reservation(result)),
+    ]
+    if result["witness"] is not None:
+        of_a, of_b = result["witness"]
+        rows.append(("witness", f"triangle {of_a} of A meets triangle {of_b} of B"))
+    rows.append(("box tests", count(stats["box_tests"])))
+    rows.append(("triangle tests", _triangle_tests(stats)))
+    rows.append(("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"))
+    rows.append(("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())))
+    tables = [Table(rows)]
+    if "pairs" in result:
+        tables.append(_pairs_table(result))
+    return tables
+
+
+def collide_bare(record: Record) -> str:
+    """Return the pairs where they were asked for, two numbers a line, else the status word."""
+    result = record["result"]
+    if "pairs" in result:
+        return "".join(f"{i} {j}\n" for i, j in result["pairs"])
+    return f"{result['status']}\n"
+
+
+def _source_row(name: str, source: Record) -> tuple[str, str]:
+    return name, f"{source['path']} ({count(source['triangle_count'])} triangles)"
+
+
+def _reservation(result: Record) -> str:
+    """Return what an approximate answer leaves open."""
+    if not result["approximate"] or result["status"] == "separated":
+        return ""
+    return f" of boxes: the surfaces are at most {length(result['error_bound'])} apart"
+
+
+def _triangle_tests(stats: Record) -> str:
+    text = count(stats["triangle_tests"])
+    exact = stats["exact_triangle_tests"]
+    return f"{text} ({count(exact)} in exact arithmetic)" if exact else text
+
+
+def _built(stats: Record, side: str) -> str:
+    built, possible = stats[f"nodes_built_{side}"], stats[f"nodes_possible_{side}"]
+    return f"{count(built)} of {count(possible)}"
+
+
+def _pairs_table(result: Record) -> Table:
+    pairs = result["pairs"]
+    cut = "" if result["pairs_complete"] else ", more exist: see --limit"
+    title = f"{count(len(pairs))} intersecting pairs of triangles{cut}"
+    return Table([(str(i), str(j)) for i, j in pairs], ("triangle of A", "triangle of B"), title)

@@ -1,0 +1,139 @@
+"""The record of `obbtree info` and its tables."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from obbcli.mesh import Mesh
+from obbcli.report.record import Source, document, file_sha256, finite
+from obbcli.report.table import Table, count, length, point, size
+
+if TYPE_CHECKING:
+    from obbcli.report.record import Record
+    from obbcli.tree import ObbTree
+
+_CHANGES = {
+    "unchanged": "unchanged since",
+    "changed": "CHANGED since: the tree answers for the mesh as it was",
+    "not found": "not found beside the tree",
+}
+
+
+def info_record(
+    path: str, shape: Mesh | ObbTree, sha256: str | None, *, is_checked: bool
+) -> Record:
+    """Return the record of a file.
+
+    Args:
+        path: as the user wrote it; `-` for standard input.
+        shape: what it holds.
+        sha256: of its bytes, where it is known already.
+        is_checked: whether its tree was proven.
+
+    Raises:
+        TreeFileError: the tree contradicts itself.
+        OSError: the file is gone.
+    """
+    is_mesh = isinstance(shape, Mesh)
+    mesh = shape if isinstance(shape, Mesh) else shape.mesh
+    source = Source(path, sha256 or file_sha256(path), len(mesh.triangles))
+    result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
+    result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
+    result["check"] = "passed" if is_checked else None
+    return document("info", {"file": asdict(source)}, result=result)
+
+
+def _mesh_part(mesh: Mesh) -> Record:
+    return {
+        "triangle_count": len(mesh.triangles),
+        "vertex_count": len(mesh.vertices),
+        "bounds": mesh.bounds.tolist(),
+        "size": finite(mesh.size),
+        "surface_centroid": mesh.surface_centroid.tolist(),
+        "is_watertight": mesh.is_watertight,
+        "degenerate_count": mesh.degenerate_count,
+        "duplicate_count": mesh.duplicate_count,
+    }
+
+
+def _tree_part(path: str, tree: ObbTree) -> Record:
+    return {
+        "fit": tree.fit,
+        "split": tree.split,
+        "leaf_size": tree.leaf_size,
+        "max_depth": tree.max_depth,
+        "node_count": tree.node_count,
+        "possible_node_count": tree.possible_node_count,
+        "nbytes": tree.nbytes,
+        "bytes_per_triangle": tree.nbytes / tree.triangle_count,
+        "source": tree.source,
+        "source_sha256": tree.source_sha256,
+        "source_state": _source_state(path, tree),
+        "tool_version": tree.tool_version,
+        "levels": [level._asdict() for level in tree.levels],
+    }
+
+
+def _source_state(path: str, tree: ObbTree) -> str | None:
+    """Return what became of the mesh that the tree was built from; None where it has no name."""
+    if tree.source is None or tree.source_sha256 is None:
+        return None
+    # Only beside the tree: a file from elsewhere must not choose what is read.
+    mesh_file = Path(path).parent / Path(tree.source).name
+    if path == "-" or not mesh_file.is_file():
+        return "not found"
+    return "unchanged" if file_sha256(mesh_file) == tree.source_sha256 else "changed"
+
+
+def info_tables(record: Record) -> list[Table]:
+    """Return the tables of a record: the mesh, and the tree and its levels where there is one."""
+    result = record["result"]
+    tables = [Table(_mesh_rows(record["inputs"]["file"]["path"], result))]
+    if result["tree"] is not None:
+        tables.append(Table(_tree_rows(result["tree"]), title="tree"))
+        tables.append(_levels_table(result["tree"]["levels"]))
+    if result["check"] is not None:
+        tables.append(Table([("check", "passed: every triangle lies in all boxes above it")]))
+    return tables
+
+
+def _mesh_rows(path: str, result: Record) -> list[tuple[str, str]]:
+    low, high = result["bounds"]
+    return [
+        ("file", f"{path} ({result['kind']})"),
+        ("triangles", count(result["triangle_count"])),
+        ("vertices", count(result["vertex_count"])),
+        ("bounds", f"{point(low)}  to  {point(high)}"),
+        ("size", f"{length(result['size'])} (diagonal, mesh units)"),
+        ("centroid", point(result["surface_centroid"])),
+        ("watertight", "yes" if result["is_watertight"] else "no"),
+        ("degenerate", f"{count(result['degenerate_count'])} triangles"),
+        ("duplicate", f"{count(result['duplicate_count'])} triangles"),
+    ]
+
+
+def _tree_rows(tree: Record) -> list[tuple[str, str]]:
+    depth = "none" if tree["max_depth"] is None else str(tree["max_depth"])
+    rows = [
+        ("boxes", count(tree["node_count"])),
+        ("built by", f"obbtree {tree['tool_version']}"),
+        ("options", f"fit {tree['fit']}, split {tree['split']}"),
+        ("limits", f"leaf size {tree['leaf_size']}, max depth {depth}"),
+        ("memory", f"{size(tree['nbytes'])}, {tree['bytes_per_triangle']:.1f} bytes a triangle"),
+    ]
+    if tree["source"] is not None:
+        rows.append(("source", tree["source"]))
+        rows.append(("SHA-256", str(tree["source_sha256"])))
+    if tree["source_state"] is not None:
+        rows.append(("mesh file", _CHANGES[tree["source_state"]]))
+    return rows
+
+
+def _levels_table(levels: list[Record]) -> Table:
+    rows = [
+        (str(depth), count(level["box_count"]), count(level["leaf_count"]), length(level["volume"]))
+        for depth, level in enumerate(levels)
+    ]
+    return Table(rows, ("level", "boxes", "leaves", "total volume"))

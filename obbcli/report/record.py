@@ -1,0 +1,120 @@
+"""The parts that every record shares: schema, inputs, motion, accuracy, stats, errors.
+
+A record is a dict of plain values in a fixed order; JSON and tables are both made from it alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from obbcli import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from obbcli.errors import ObbError
+    from obbcli.motion import Body
+    from obbcli.results import QueryStats
+
+Record: TypeAlias = dict[str, Any]
+
+SCHEMA_VERSION = 1
+_CHUNK = 1 << 20
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that was asked about.
+
+    Attributes:
+        path: as the user wrote it; `-` for standard input.
+        sha256: of the file's bytes, in hexadecimal; None where it was not asked for.
+        triangle_count: how many triangles it holds; None where it could not be read.
+    """
+
+    path: str
+    sha256: str | None
+    triangle_count: int | None
+
+
+def document(command: str, inputs: Any, **parts: Any) -> Record:
+    """Return a record of one command, its parts in the order given."""
+    head = {
+        "schema": f"obbtree/{command}/{SCHEMA_VERSION}",
+        "tool_version": __version__,
+        "inputs": inputs,
+    }
+    return head | parts
+
+
+def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
+    """Return the motion as understood: poses and pivots in world coordinates.
+
+    Args:
+        bodies: A and B; their shapes are trees or meshes.
+        duration: s; None for the default.
+    """
+    if duration is None:
+        duration = 0.0 if all(body.motion.is_at_rest for body in bodies) else 1.0
+    a, b = bodies
+    return {"duration": float(duration), "a": _body_part(a), "b": _body_part(b)}
+
+
+def _body_part(body: Body) -> Record:
+    pose, motion = body.pose, body.motion
+    pivot = motion.pivot
+    if pivot is None:
+        assert not isinstance(body.shape, (str, PathLike))
+        pivot = pose.apply(body.shape.surface_centroid[None])[0]
+    return {
+        "pose": {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()},
+        "linear_velocity": motion.linear_velocity.tolist(),
+        "angular_velocity": motion.angular_velocity.tolist(),
+        "pivot": pivot.tolist(),
+    }
+
+
+def stats_part(stats: QueryStats) -> Record:
+    """Return what a question cost."""
+    part = dict(vars(stats))
+    part["seconds"] = seconds_part(stats.seconds)
+    return part
+
+
+def seconds_part(seconds: Mapping[str, float]) -> dict[str, float]:
+    """Return wall times by stage, in s."""
+    return {stage: float(value) for stage, value in seconds.items()}
+
+
+def error_part(error: ObbError, code: int) -> Record:
+    """Return an error as its JSON object."""
+    return {
+        "error": error.fault,
+        "kind": type(error).__name__,
+        "code": code,
+        "where": error.where,
+        "remedy": error.remedy,
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number that JSON can hold: None where it lies beyond the largest double."""
+    return float(value) if math.isfinite(value) else None
+
+
+def file_sha256(path: str | Path) -> str:
+    """Return the SHA-256 of a file's bytes, in hexadecimal.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    digest = hashlib.sha256()
+    with Path(path).open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            digest.update(chunk)
+    return digest.hexdigest()
