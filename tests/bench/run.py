@@ -1,0 +1,45 @@
+"""Run the benches: `python tests/bench/run.py [--quick] [--only NAME] [--json FILE]`.
+
+Every answer is asserted; what is printed is the median of rounds in turns, and the quartiles.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+import bench_build
+import bench_static
+import bench_wall
+from harness import Row, machine, record, table
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCHES = {"build": bench_build.run, "static": bench_static.run, "wall": bench_wall.run}
+
+
+def main() -> None:
+    """Run what is asked for, print tables, write the record."""
+    parser = argparse.ArgumentParser(description="obbtree against python-fcl and coal")
+    parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer rounds")
+    parser.add_argument("--only", choices=BENCHES, action="append", help="one bench (repeatable)")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
+    options = parser.parse_args()
+    about = machine(ROOT)
+    for key, value in about.items():
+        print(f"{key}: {value}")
+    rows: list[Row] = []
+    for name in options.only or BENCHES:
+        measured = list(BENCHES[name](options.quick))
+        for bench in dict.fromkeys(row.bench for row in measured):
+            print(f"\n{bench}\n{table([row for row in measured if row.bench == bench])}")
+        rows += measured
+    if options.json:
+        options.json.write_text(json.dumps(record(rows, about), indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
