@@ -36,12 +36,17 @@ help:
 
 OBBTREE := $(BIN)/obbtree
 
+# Gears in mesh and pushed together, linked chain links, a nut on its bolt and pulled against the thread.
 demo: .venv/installed
+	@mkdir -p .build/demo
 	$(OBBTREE) info $(SAMPLES)/gear.stl
-	mkdir -p .build/demo
-	$(OBBTREE) build $(SAMPLES)/gear.stl -o .build/demo/gear.obbt --force
-	$(OBBTREE) info .build/demo/gear.obbt --check
-	$(OBBTREE) collide .build/demo/gear.obbt $(SAMPLES)/pinion.stl
+	$(OBBTREE) collide $(SAMPLES)/gear.stl $(SAMPLES)/pinion.stl
+	$(OBBTREE) collide $(SAMPLES)/gear.stl $(SAMPLES)/pinion.stl --translate-b -1 0 0 --all-pairs --limit 5
+	$(OBBTREE) collide $(SAMPLES)/chain_link_a.off $(SAMPLES)/chain_link_b.ply
+	$(OBBTREE) build $(SAMPLES)/bolt.ply $(SAMPLES)/nut.obj -o .build/demo --force
+	$(OBBTREE) info .build/demo/bolt.obbt --check
+	$(OBBTREE) collide .build/demo/bolt.obbt .build/demo/nut.obbt
+	$(OBBTREE) collide .build/demo/bolt.obbt $(SAMPLES)/nut.obj --translate-b 0 0 1
 
 test: .venv/installed
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
