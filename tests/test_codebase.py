@@ -1,0 +1,188 @@
+"""The rules of the code base that a reader counts on: layers, borders, sizes, docstrings."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "obbcli"
+MODULES = sorted(path.relative_to(ROOT).as_posix() for path in PACKAGE.rglob("*.py"))
+KERNEL_SOURCES = sorted(
+    path.relative_to(ROOT).as_posix()
+    for path in (PACKAGE / "kernels").iterdir()
+    if path.suffix in {".cpp", ".hpp"}
+)
+LONGEST_FILE = 400
+
+# Each may import those of rows above it, and of its own row as long as no circle comes of it.
+LAYERS = (
+    ("errors", "arrays"),
+    ("kernels",),
+    ("mesh", "motion", "accuracy", "results", "primitives", "treefile"),
+    ("tree",),
+    ("query",),
+    ("scene", "sweep", "study", "view"),
+    ("report",),
+    ("cli",),
+    ("__init__", "__main__"),
+)
+RANKS = {name: rank for rank, row in enumerate(LAYERS) for name in row}
+TOP_LEVEL = {
+    "LICENSE",
+    "Makefile",
+    "README.md",
+    "obbcli",
+    "pyproject.toml",
+    "sample_meshes",
+    "tests",
+}
+
+
+def parse(module: str) -> ast.Module:
+    """Return the syntax tree of a file of the package."""
+    return ast.parse((ROOT / module).read_text(encoding="utf-8"), module)
+
+
+def layer(module: str) -> str:
+    """Return the part of the package that `obbcli/part.py` or `obbcli/part/file.py` belongs to."""
+    return Path(module).parts[1].removesuffix(".py")
+
+
+def imported(tree: ast.Module) -> set[str]:
+    """Return the dotted names a file imports when it runs, also inside functions.
+
+    Those under `if TYPE_CHECKING` only serve annotations and bind no layer to another.
+    """
+    names = set()
+    nodes: list[ast.AST] = [tree]
+    while nodes:
+        node = nodes.pop()
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            nodes += node.orelse
+            continue
+        nodes += ast.iter_child_nodes(node)
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"line {node.lineno}: imports are absolute"
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return names
+
+
+def layers_imported(module: str) -> set[str]:
+    """Return the other parts of the package that a file imports, at any place in it."""
+    own = {name.split(".")[1] for name in imported(parse(module)) if name.startswith("obbcli.")}
+    return (own & RANKS.keys()) - {layer(module)}
+
+
+def project_files() -> list[str]:
+    """Return the files under version control; in an unpacked archive, all but hidden ones."""
+    if (ROOT / ".git").exists():
+        command = ["git", "ls-files", "-z", "--cached"]
+        listing = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        names = [name for name in listing.stdout.split("\0") if name]
+    else:
+        names = [path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if path.is_file()]
+        names = [name for name in names if not re.search(r"(^|/)(\.|__pycache__/)", name)]
+    return [name for name in names if (ROOT / name).is_file()]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_module_belongs_to_a_known_layer(module: str) -> None:
+    assert layer(module) in RANKS
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_module_imports_lower_layers_only(module: str) -> None:
+    rank = RANKS[layer(module)]
+
+    above = {name for name in layers_imported(module) if RANKS[name] > rank}
+
+    assert not above
+
+
+def test_layers_import_each_other_in_no_circle() -> None:
+    edges = {name: set[str]() for name in RANKS}
+    for module in MODULES:
+        edges[layer(module)] |= layers_imported(module)
+
+    settled: set[str] = set()
+    while free := {name for name in edges if name not in settled and edges[name] <= settled}:
+        settled |= free
+
+    assert settled == edges.keys()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_only_the_kernels_package_imports_the_extension(module: str) -> None:
+    touches = any("_core" in name.split(".") for name in imported(parse(module)))
+
+    assert touches == (module == "obbcli/kernels/__init__.py")
+
+
+@pytest.mark.parametrize("source", KERNEL_SOURCES)
+def test_only_bindings_include_nanobind_or_python(source: str) -> None:
+    text = (ROOT / source).read_text(encoding="utf-8")
+
+    includes = re.findall(r'#\s*include\s*[<"]((?:nanobind/|Python\.h)[^>"]*)', text)
+
+    assert not includes or Path(source).name.startswith("bindings")
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_only_the_command_line_exits_or_prints(module: str) -> None:
+    if layer(module) in {"cli", "__main__"}:
+        return
+
+    calls = [ast.unparse(n.func) for n in ast.walk(parse(module)) if isinstance(n, ast.Call)]
+
+    assert not {"print", "exit", "quit", "sys.exit", "os._exit"} & set(calls)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_public_things_have_docstrings(module: str) -> None:
+    tree = parse(module)
+    missing = [] if ast.get_docstring(tree) else ["module"]
+
+    def visit(body: list[ast.stmt]) -> None:
+        for node in body:
+            kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+            if isinstance(node, kinds) and not node.name.startswith("_"):
+                if not ast.get_docstring(node) and not is_overload(node):
+                    missing.append(node.name)
+                if isinstance(node, ast.ClassDef):
+                    visit(node.body)
+
+    visit(tree.body)
+    assert not missing
+
+
+def is_overload(node: ast.stmt) -> bool:
+    """Return whether a definition only adds a signature to the one that follows it."""
+    decorators = getattr(node, "decorator_list", [])
+    return any(ast.unparse(one).rpartition(".")[2] == "overload" for one in decorators)
+
+
+@pytest.mark.parametrize("name", MODULES + KERNEL_SOURCES)
+def test_file_is_not_too_long(name: str) -> None:
+    lines = (ROOT / name).read_text(encoding="utf-8").count("\n")
+
+    assert lines <= LONGEST_FILE
+
+
+def test_top_level_holds_what_it_should() -> None:
+    entries = {Path(name).parts[0] for name in project_files()}
+
+    assert {entry for entry in entries if not entry.startswith(".")} <= TOP_LEVEL
+
+
+def test_no_file_names_a_place_on_somebodys_machine() -> None:
+    places = re.compile(rb"(?<![\w.])/(?:home|root|Users|work|tmp|mnt|opt)/\w|[A-Z]:\\\\?Users")
+    found = [name for name in project_files() if places.search((ROOT / name).read_bytes())]
+
+    assert not [name for name in found if name != "tests/test_codebase.py"]
