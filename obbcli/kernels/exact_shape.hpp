@@ -1,6 +1,7 @@
 // Shapes in exact integers, and the complete sets of separating axes for a pair of them.
 #pragma once
 
+#include "axis.hpp"
 #include "obb.hpp"
 #include "triangle.hpp"
 #include "wide_int.hpp"
@@ -8,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
+#include <type_traits>
 
 namespace obb {
 
@@ -30,6 +33,12 @@ struct DigitRange {
     }
     [[nodiscard]] constexpr int bits() const { return std::max(0, high - low); }
 };
+
+[[nodiscard]] constexpr DigitRange digits_of(const Vec3& v) {
+    DigitRange digits;
+    digits.include(v);
+    return digits;
+}
 
 template <std::size_t N>
 [[nodiscard]] constexpr WideInt<N> to_wide(double value, int unit) {
@@ -72,26 +81,64 @@ template <std::size_t N>
     return shape;
 }
 
-enum class AxisKind : std::uint8_t {
-    kNone,
-    kFaceA,    // normal of face `a` of A
-    kFaceB,    // normal of face `b` of B
-    kEdgeEdge, // edge `a` of A x edge `b` of B
-    kPlane,    // all edges are parallel to one plane: its normal
-    kEdgeA,    // ... that normal x edge `a` of A
-    kEdgeB,    // ... that normal x edge `b` of B
-    kLine,     // all edges are parallel to one line: its direction
-    kAcross,   // ... coordinate axis `a` x that direction
-    kPoint     // no edges at all: coordinate axis `a`
+// The digits that a shape's positions span, and the widest of its edges where they have units of
+// their own.
+struct ShapeDigits {
+    DigitRange positions;
+    int edge_bits = 0;
+
+    constexpr void include(const Triangle& triangle) {
+        for (const Vec3& p : triangle) {
+            positions.include(p);
+        }
+    }
+    constexpr void include(const Obb& box) {
+        positions.include(box.center);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const DigitRange axis = digits_of(box.axes[i]);
+            const Dyadic half = to_dyadic(box.half_extents[i]);
+            if (half.mantissa != 0) {
+                edge_bits = std::max(edge_bits, axis.bits());
+                positions.low = std::min(positions.low, axis.low + half.exponent);
+                positions.high = std::max(positions.high, axis.high + half.top());
+            }
+        }
+    }
 };
 
-struct AxisId {
-    AxisKind kind = AxisKind::kNone;
-    std::uint8_t a = 0;
-    std::uint8_t b = 0;
+[[nodiscard]] constexpr Vec3 origin_of(const Triangle& triangle) { return triangle[0]; }
+[[nodiscard]] constexpr Vec3 origin_of(const Obb& box) { return box.center; }
 
-    friend constexpr bool operator==(const AxisId&, const AxisId&) = default;
-};
+// The product of two doubles, exactly.
+template <std::size_t N>
+[[nodiscard]] constexpr WideInt<N> to_wide_product(double a, double b, int unit) {
+    const Dyadic p = to_dyadic(a);
+    const Dyadic q = to_dyadic(b);
+    const WideInt<2> mantissa = WideInt<1>(p.mantissa) * WideInt<1>(q.mantissa);
+    return mantissa.is_zero() ? WideInt<N>{}
+                              : mantissa.template resized<N>()
+                                    << static_cast<std::size_t>(p.exponent + q.exponent - unit);
+}
+
+template <std::size_t N>
+[[nodiscard]] ExactShape<N> exact_shape(const Obb& box, const Vec3& origin, int unit) {
+    ExactShape<N> shape;
+    shape.points[0] = to_wide<N>(box.center, unit) - to_wide<N>(origin, unit);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double half = box.half_extents[i];
+        const Vec3& axis = box.axes[i];
+        shape.generators[i] = {to_wide_product<N>(half, axis.x, unit),
+                               to_wide_product<N>(half, axis.y, unit),
+                               to_wide_product<N>(half, axis.z, unit)};
+        if (half != 0) {
+            shape.edges[i] = to_wide<N>(axis, digits_of(axis).low);
+        }
+    }
+    shape.point_count = 1;
+    shape.generator_count = 3;
+    shape.face_count = 3;
+    return shape;
+}
 
 // Visits axes L of which one separates the shapes whenever they are disjoint, whatever the rank
 // of their edges (closed convex sets, so flat boxes, segments and points are included). `visit`
@@ -101,34 +148,33 @@ struct AxisId {
 template <std::size_t N, typename Visit>
 bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, Visit&& visit);
 
-namespace detail {
-
+// The span of some vectors: its rank, and what spans it or is normal to it.
 template <std::size_t N>
-struct Span {
+struct WideSpan {
     int rank = 0;
     WideVec<N> edge;       // of rank 1
     WideVec<2 * N> normal; // of rank 2
 };
 
 template <std::size_t N>
-[[nodiscard]] Span<N> span_of_edges(const ExactShape<N>& a, const ExactShape<N>& b) {
-    const std::array<const WideVec<N>*, 6> edges{&a.edges[0], &a.edges[1], &a.edges[2],
-                                                 &b.edges[0], &b.edges[1], &b.edges[2]};
-    Span<N> span;
-    for (const WideVec<N>* edge : edges) {
-        if (span.rank == 0 && !edge->is_zero()) {
-            span.edge = *edge;
-            span.rank = 1;
-        } else if (span.rank == 1) {
-            span.normal = cross(span.edge, *edge);
-            span.rank = span.normal.is_zero() ? 1 : 2;
-        } else if (span.rank == 2 && !dot(span.normal, *edge).is_zero()) {
-            span.rank = 3;
+[[nodiscard]] WideSpan<N> span_of(std::span<const WideVec<N>> vectors) {
+    WideSpan<N> result;
+    for (const WideVec<N>& v : vectors) {
+        if (result.rank == 0 && !v.is_zero()) {
+            result.edge = v;
+            result.rank = 1;
+        } else if (result.rank == 1) {
+            result.normal = cross(result.edge, v);
+            result.rank = result.normal.is_zero() ? 1 : 2;
+        } else if (result.rank == 2 && !dot(result.normal, v).is_zero()) {
+            result.rank = 3;
             break;
         }
     }
-    return span;
+    return result;
 }
+
+namespace detail {
 
 template <std::size_t N, typename Visit>
 bool visit_faces(const ExactShape<N>& shape, AxisKind kind, Visit&& visit) {
@@ -176,7 +222,7 @@ bool visit_plane_axes(const ExactShape<N>& a, const ExactShape<N>& b, const Wide
 }
 
 template <std::size_t N, typename Visit>
-bool visit_line_axes(const Span<N>& span, Visit&& visit) {
+bool visit_line_axes(const WideSpan<N>& span, Visit&& visit) {
     if (span.rank == 1 && visit(AxisId{AxisKind::kLine}, span.edge)) {
         return true;
     }
@@ -196,7 +242,9 @@ bool visit_line_axes(const Span<N>& span, Visit&& visit) {
 
 template <std::size_t N, typename Visit>
 bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, Visit&& visit) {
-    const detail::Span<N> span = detail::span_of_edges(a, b);
+    const std::array<WideVec<N>, 6> edges{a.edges[0], a.edges[1], a.edges[2],
+                                          b.edges[0], b.edges[1], b.edges[2]};
+    const WideSpan<N> span = span_of<N>(edges);
     switch (span.rank) {
     case 3:
         return detail::visit_solid_axes(a, b, visit);
@@ -212,9 +260,9 @@ struct WideInterval {
     WideInt<K> low, high;
 };
 
-// The shape's projection on L, not normalised.
 template <std::size_t N, std::size_t M>
-[[nodiscard]] WideInterval<N + M> project(const ExactShape<N>& shape, const WideVec<M>& axis) {
+[[nodiscard]] WideInterval<N + M> project_points(const ExactShape<N>& shape,
+                                                 const WideVec<M>& axis) {
     WideInterval<N + M> interval;
     interval.low = interval.high = dot(axis, shape.points[0]);
     for (std::size_t k = 1; k < shape.point_count; ++k) {
@@ -225,6 +273,13 @@ template <std::size_t N, std::size_t M>
             interval.high = place;
         }
     }
+    return interval;
+}
+
+// The shape's projection on L, not normalised.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] WideInterval<N + M> project(const ExactShape<N>& shape, const WideVec<M>& axis) {
+    WideInterval<N + M> interval = project_points(shape, axis);
     for (std::size_t k = 0; k < shape.generator_count; ++k) {
         const WideInt<N + M> step = dot(axis, shape.generators[k]);
         const WideInt<N + M> reach = step.is_negative() ? -step : step;

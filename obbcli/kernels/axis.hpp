@@ -1,0 +1,47 @@
+// The separating axes of a pair of shapes: their names, and what one of them says about time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace obb {
+
+enum class AxisKind : std::uint8_t {
+    kNone,
+    kFaceA,    // normal of face `a` of A
+    kFaceB,    // normal of face `b` of B
+    kEdgeEdge, // edge `a` of A x edge `b` of B
+    kPlane,    // all edges are parallel to one plane: its normal
+    kEdgeA,    // ... that normal x edge `a` of A
+    kEdgeB,    // ... that normal x edge `b` of B
+    kLine,     // all edges are parallel to one line: its direction
+    kAcross,   // ... coordinate axis `a` x that direction
+    kPoint     // no edges at all: coordinate axis `a`
+};
+
+struct AxisId {
+    AxisKind kind = AxisKind::kNone;
+    std::uint8_t a = 0;
+    std::uint8_t b = 0;
+
+    friend constexpr bool operator==(const AxisId&, const AxisId&) = default;
+};
+
+inline constexpr std::size_t kAxisCount = 15;
+
+// A place for each face and edge-edge axis: A's faces, B's faces, then A's edges by B's.
+[[nodiscard]] constexpr std::size_t axis_index(AxisId id) {
+    return id.kind == AxisKind::kFaceA   ? id.a
+           : id.kind == AxisKind::kFaceB ? 3u + id.b
+                                         : 6u + 3u * id.a + id.b;
+}
+
+// What a projection on L says in doubles: the shapes' projections meet at time t if and only if
+// low <= speed * t <= high, where the true low and high are within `error` of these and the true
+// speed is within `speed_error`. L itself need not be known any better.
+struct AxisBound {
+    double low, high, speed, error, speed_error;
+};
+
+} // namespace obb

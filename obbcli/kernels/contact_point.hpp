@@ -1,0 +1,30 @@
+// A common point of two shapes in contact, and the normals that go with it.
+#pragma once
+
+#include "contact.hpp"
+#include "obb.hpp"
+#include "triangle.hpp"
+
+namespace obb {
+
+// A common point at `time`, within rounding of both shapes. Where features meet it lies in the
+// middle of what they have in common (Eberly 2008 §2.3.2, 3.3.2 and 4.3.2 choose coordinates one
+// by one, which leaves the other shape); where the shapes overlap it is some point of the overlap.
+template <typename A, typename B>
+[[nodiscard]] Vec3 contact_point(const A& a, const B& b, const LinearMotion& motion, double time,
+                                 const Touch& touch);
+
+// Unit outward normal of the face that `feature` lies in; of several faces the one that points
+// along `towards` best. A triangle's normal is turned towards `towards`; where it has none, the
+// result is `towards`.
+[[nodiscard]] Vec3 face_normal(const Triangle& triangle, const Feature& feature,
+                               const Vec3& towards);
+[[nodiscard]] Vec3 face_normal(const Obb& box, const Feature& feature, const Vec3& towards);
+
+// The normal of the ellipsoid with the box's axes and half extents through `point`, relative to
+// the box at that time: a smooth field of normals over the box (Eberly 2008 §7.2). A triangle has
+// its face normal only.
+[[nodiscard]] Vec3 smooth_normal(const Triangle& triangle, const Vec3& point, const Vec3& normal);
+[[nodiscard]] Vec3 smooth_normal(const Obb& box, const Vec3& point, const Vec3& normal);
+
+} // namespace obb
