@@ -57,26 +57,26 @@ def hulls_intersect(p: Hull, q: Hull) -> bool:
     return True
 
 
-def triangles_separation(a: Any, b: Any) -> float:
+def triangles_separation(a: Any, b: Any) -> Fraction:
     """Return `hulls_separation` of two triangles."""
     return hulls_separation(triangle_hull(a), triangle_hull(b))
 
 
-def boxes_separation(box_a: Any, box_b: Any) -> float:
+def boxes_separation(box_a: Any, box_b: Any) -> Fraction:
     """Return `hulls_separation` of two boxes."""
     return hulls_separation(box_hull(box_a), box_hull(box_b))
 
 
-def triangle_box_separation(triangle: Any, box: Any) -> float:
+def triangle_box_separation(triangle: Any, box: Any) -> Fraction:
     """Return `hulls_separation` of a triangle and a box."""
     return hulls_separation(triangle_hull(triangle), box_hull(box))
 
 
-def hulls_separation(p: Hull, q: Hull) -> float:
-    """Return the widest gap along any complete axis, in units of length, correctly rounded.
+def hulls_separation(p: Hull, q: Hull) -> Fraction:
+    """Return the widest gap along any complete axis, as a length to 100 bits with the exact sign.
 
-    Positive: the hulls are at least so far apart. Zero: they touch. Negative: no axis parts them by
-    less than this overlap. The sign is exact, but values below the subnormals round to zero.
+    Positive: the hulls are at least so far apart. Zero: they touch. Negative: every axis shows an
+    overlap of at least this.
     """
     p, q = same_unit(p, q)
     best: tuple[int, int] | None = None
@@ -89,7 +89,7 @@ def hulls_separation(p: Hull, q: Hull) -> float:
             best = gap, square
     assert best is not None
     gap, square = best
-    return float(_sign(gap) * p.unit * root(Fraction(gap * gap, square)))
+    return _sign(gap) * p.unit * root(Fraction(gap * gap, square))
 
 
 def _signed_square_less(p: tuple[int, int], q: tuple[int, int]) -> bool:

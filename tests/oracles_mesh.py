@@ -5,6 +5,7 @@ Vertices may be doubles or rationals; ids are rows of the faces.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,6 @@ from oracles_moving import contact_interval
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from fractions import Fraction
 
     from numpy.typing import NDArray
 
@@ -93,7 +93,7 @@ def mesh_distance_squared(
     best: Fraction | None = None
     nearest: list[Pair] = []
     for bound, i, j in _by_bound(_bounds(vertices_a, faces_a), _bounds(vertices_b, faces_b)):
-        if best is not None and bound > best:
+        if best is not None and Fraction(bound) ** 2 > best:
             break
         square = hulls_distance_squared(hulls_a[i], hulls_b[j])
         if best is None or square < best:
@@ -150,11 +150,11 @@ def _overlapping(bounds_a: NDArray[np.float64], bounds_b: NDArray[np.float64]) -
 def _by_bound(
     bounds_a: NDArray[np.float64], bounds_b: NDArray[np.float64]
 ) -> Iterator[tuple[float, int, int]]:
-    """Yield pairs with a lower bound of their squared distance, least first."""
+    """Yield pairs with a lower bound of their distance, least first."""
     (low_a, high_a), (low_b, high_b) = bounds_a[:, :, None], bounds_b[:, None]
     gaps = np.maximum(np.maximum(low_a - high_b, low_b - high_a), 0.0)
-    # Rounding is far below the share given away here; underflow gives a bound of zero.
-    bound = (gaps * gaps).sum(axis=2) * (1 - 1e-12)
+    # The rounding of differences is far below the share given away here.
+    bound = gaps.max(axis=2) * (1 - 1e-12)
     for flat in np.argsort(bound, axis=None, kind="stable"):
         i, j = divmod(int(flat), bound.shape[1])
         yield float(bound[i, j]), i, j

@@ -127,7 +127,7 @@ def test_boxes_are_at_least_as_far_apart_as_along_any_axis() -> None:
         assert (square == 0) == record["intersect"], record["name"]
         if square:
             separation = oracles.boxes_separation(a, b)
-            assert float(oracles.root(square)) >= separation * (1 - 1e-15), record["name"]
+            assert oracles.root(square) * (1 + Fraction(1, 10**20)) >= separation, record["name"]
 
 
 @pytest.mark.parametrize(
