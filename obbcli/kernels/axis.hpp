@@ -29,6 +29,7 @@ struct AxisId {
 };
 
 inline constexpr std::size_t kAxisCount = 15;
+inline constexpr std::uint32_t kAllAxes = (1u << kAxisCount) - 1;
 
 // A place for each face and edge-edge axis: A's faces, B's faces, then A's edges by B's.
 [[nodiscard]] constexpr std::size_t axis_index(AxisId id) {

@@ -1,6 +1,7 @@
 #include "contact_point.hpp"
 
 #include "convex_polygon.hpp"
+#include "extremes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,13 +21,6 @@ namespace {
     return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }
 
-[[nodiscard]] double reach(const Triangle& t) {
-    return std::max({norm_inf(t[0]), norm_inf(t[1]), norm_inf(t[2])});
-}
-[[nodiscard]] double reach(const Obb& box) {
-    return std::max(norm_inf(box.center), norm_inf(box.half_extents));
-}
-
 [[nodiscard]] Vec3 origin_of(const Triangle& t) { return t[0]; }
 [[nodiscard]] Vec3 origin_of(const Obb& box) { return box.center; }
 
@@ -43,8 +37,7 @@ namespace {
 
 // B's way relative to A until `time`, times 2^exponent; scaled so that nothing overflows early.
 [[nodiscard]] Vec3 relative_way(const LinearMotion& motion, double time, int exponent) {
-    const int speed =
-        exponent_of(std::max(norm_inf(motion.velocity_a), norm_inf(motion.velocity_b)));
+    const int speed = exponent_of(std::max(reach(motion.velocity_a), reach(motion.velocity_b)));
     int moment = 0;
     const double fraction = std::frexp(time, &moment);
     const Vec3 w = scaled(motion.velocity_b, -speed - 1) - scaled(motion.velocity_a, -speed - 1);
@@ -212,7 +205,7 @@ class EdgeSearch {
 };
 
 [[nodiscard]] Vec3 unit(const Vec3& v, const Vec3& otherwise) {
-    const double size = norm_inf(v);
+    const double size = reach(v);
     if (!(size > 0)) {
         return otherwise;
     }
@@ -225,7 +218,7 @@ class EdgeSearch {
 template <typename A, typename B>
 Vec3 contact_point(const A& a, const B& b, const LinearMotion& motion, double time,
                    const Touch& touch) {
-    const int exponent = exponent_of(std::max(reach(a), reach(b))) + 1;
+    const int exponent = exponent_of(larger(reach(a), reach(b))) + 1;
     const Vec3 origin = scaled(origin_of(a), -exponent);
     const A at_a = placed(a, origin, Vec3{0, 0, 0}, -exponent);
     const B at_b = placed(b, origin, relative_way(motion, time, -exponent), -exponent);
@@ -252,8 +245,8 @@ Vec3 face_normal(const Triangle& triangle, const Feature&, const Vec3& towards) 
     const Vec3 origin = scaled(triangle[0], exponent);
     const Vec3 u = scaled(triangle[1], exponent) - origin;
     const Vec3 v = scaled(triangle[2], exponent) - origin;
-    const Vec3 normal = unit(
-        cross(scaled(u, -exponent_of(norm_inf(u))), scaled(v, -exponent_of(norm_inf(v)))), towards);
+    const Vec3 normal =
+        unit(cross(scaled(u, -exponent_of(reach(u))), scaled(v, -exponent_of(reach(v)))), towards);
     return dot(normal, towards) < 0 ? -normal : normal;
 }
 

@@ -5,6 +5,7 @@
 
 #include "axis.hpp"
 #include "contact.hpp"
+#include "exact_axes.hpp"
 #include "exact_shape.hpp"
 #include "rational.hpp"
 
@@ -15,16 +16,10 @@
 
 namespace obb {
 
-// Which axes matter, from doubles: bits by axis_index. Edges of lower rank ignore it.
+// Which face and edge-edge axes matter, from doubles: a bit each, by axis_index.
 struct AxisSelection {
-    std::uint32_t binding = ~std::uint32_t{0}; // may bound the first or the last time
-    std::uint32_t near = ~std::uint32_t{0};    // may have a gap of zero at the first time
-
-    [[nodiscard]] static constexpr bool has(std::uint32_t set, AxisId id) {
-        const bool masked = id.kind == AxisKind::kFaceA || id.kind == AxisKind::kFaceB ||
-                            id.kind == AxisKind::kEdgeEdge;
-        return !masked || ((set >> axis_index(id)) & 1) != 0;
-    }
+    std::uint32_t binding = kAllAxes; // may bound the first or the last time
+    std::uint32_t near = kAllAxes;    // may have a gap of zero at the first time
 };
 
 // Two shapes and B's velocity relative to A's in integers. Time is measured in units of
@@ -40,13 +35,14 @@ struct ExactPair {
 template <std::size_t N>
 class ExactContact {
   public:
-    explicit ExactContact(const ExactPair<N>& pair) : pair_(pair) {}
+    explicit ExactContact(const ExactPair<N>& pair)
+        : pair_(pair), span_(span_of_edges(pair.a, pair.b)) {}
 
     // Finds the first and last time over the axes of `selection.binding`; false: no contact.
     [[nodiscard]] bool solve(const AxisSelection& selection) {
-        const bool apart = visit_axes(pair_.a, pair_.b, [&](AxisId id, const auto& axis) {
-            return AxisSelection::has(selection.binding, id) && !narrow(id, axis);
-        });
+        const bool apart =
+            visit_axes(pair_.a, pair_.b, span_, selection.binding,
+                       [&](AxisId id, const auto& axis) { return !narrow(id, axis); });
         if (apart || (last_ && first_ > *last_)) {
             return false;
         }
@@ -69,10 +65,8 @@ class ExactContact {
         Touch touch;
         Feature a = whole(pair_.a);
         Feature b = whole(pair_.b);
-        visit_axes(pair_.a, pair_.b, [&](AxisId id, const auto& axis) {
-            if (AxisSelection::has(selection.near, id)) {
-                meet(id, axis, touch, a, b);
-            }
+        visit_axes(pair_.a, pair_.b, span_, selection.near, [&](AxisId id, const auto& axis) {
+            meet(id, axis, touch, a, b);
             return false;
         });
         if (touch.axis.kind != AxisKind::kNone) {
@@ -203,6 +197,7 @@ class ExactContact {
     }
 
     const ExactPair<N>& pair_;
+    WideSpan<N> span_;
     Time first_{};
     std::optional<Time> last_;
     AxisId axis_;

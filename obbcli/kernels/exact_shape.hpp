@@ -1,7 +1,6 @@
-// Shapes in exact integers, and the complete sets of separating axes for a pair of them.
+// Boxes and triangles in exact integers.
 #pragma once
 
-#include "axis.hpp"
 #include "obb.hpp"
 #include "triangle.hpp"
 #include "wide_int.hpp"
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <type_traits>
 
 namespace obb {
@@ -140,121 +138,6 @@ template <std::size_t N>
     return shape;
 }
 
-// Visits axes L of which one separates the shapes whenever they are disjoint, whatever the rank
-// of their edges (closed convex sets, so flat boxes, segments and points are included). `visit`
-// takes (AxisId, WideVec) and returns true to stop; so does the function.
-// Source: Minkowski's difference of A and B is a polytope whose edges are parallel to theirs, so
-// these are the normals of its facets within its affine hull, and the normals of the hull.
-template <std::size_t N, typename Visit>
-bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, Visit&& visit);
-
-// The span of some vectors: its rank, and what spans it or is normal to it.
-template <std::size_t N>
-struct WideSpan {
-    int rank = 0;
-    WideVec<N> edge;       // of rank 1
-    WideVec<2 * N> normal; // of rank 2
-};
-
-template <std::size_t N>
-[[nodiscard]] WideSpan<N> span_of(std::span<const WideVec<N>> vectors) {
-    WideSpan<N> result;
-    for (const WideVec<N>& v : vectors) {
-        if (result.rank == 0 && !v.is_zero()) {
-            result.edge = v;
-            result.rank = 1;
-        } else if (result.rank == 1) {
-            result.normal = cross(result.edge, v);
-            result.rank = result.normal.is_zero() ? 1 : 2;
-        } else if (result.rank == 2 && !dot(result.normal, v).is_zero()) {
-            result.rank = 3;
-            break;
-        }
-    }
-    return result;
-}
-
-namespace detail {
-
-template <std::size_t N, typename Visit>
-bool visit_faces(const ExactShape<N>& shape, AxisKind kind, Visit&& visit) {
-    for (std::uint8_t k = 0; k < shape.face_count; ++k) {
-        const WideVec<2 * N> normal = cross(shape.edges[(k + 1u) % 3], shape.edges[(k + 2u) % 3]);
-        if (!normal.is_zero() && visit(AxisId{kind, k, k}, normal)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-template <std::size_t N, typename Visit>
-bool visit_solid_axes(const ExactShape<N>& a, const ExactShape<N>& b, Visit&& visit) {
-    if (visit_faces(a, AxisKind::kFaceA, visit) || visit_faces(b, AxisKind::kFaceB, visit)) {
-        return true;
-    }
-    for (std::uint8_t i = 0; i < 3; ++i) {
-        for (std::uint8_t j = 0; j < 3; ++j) {
-            const WideVec<2 * N> axis = cross(a.edges[i], b.edges[j]);
-            if (!axis.is_zero() && visit(AxisId{AxisKind::kEdgeEdge, i, j}, axis)) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-template <std::size_t N, typename Visit>
-bool visit_plane_axes(const ExactShape<N>& a, const ExactShape<N>& b, const WideVec<2 * N>& normal,
-                      Visit&& visit) {
-    if (visit(AxisId{AxisKind::kPlane}, normal)) {
-        return true;
-    }
-    for (std::uint8_t k = 0; k < 6; ++k) {
-        const bool of_a = k < 3;
-        const WideVec<N>& edge = of_a ? a.edges[k] : b.edges[k - 3u];
-        const AxisId id{of_a ? AxisKind::kEdgeA : AxisKind::kEdgeB, std::uint8_t(k % 3),
-                        std::uint8_t(k % 3)};
-        if (!edge.is_zero() && visit(id, cross(normal, edge))) {
-            return true;
-        }
-    }
-    return false;
-}
-
-template <std::size_t N, typename Visit>
-bool visit_line_axes(const WideSpan<N>& span, Visit&& visit) {
-    if (span.rank == 1 && visit(AxisId{AxisKind::kLine}, span.edge)) {
-        return true;
-    }
-    const AxisKind kind = span.rank == 1 ? AxisKind::kAcross : AxisKind::kPoint;
-    for (std::uint8_t k = 0; k < 3; ++k) {
-        WideVec<N> axis;
-        (k == 0 ? axis.x : k == 1 ? axis.y : axis.z) = WideInt<N>(1);
-        if (span.rank == 0 ? visit(AxisId{kind, k}, axis)
-                           : visit(AxisId{kind, k}, cross(axis, span.edge))) {
-            return true;
-        }
-    }
-    return false;
-}
-
-} // namespace detail
-
-template <std::size_t N, typename Visit>
-bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, Visit&& visit) {
-    const std::array<WideVec<N>, 6> edges{a.edges[0], a.edges[1], a.edges[2],
-                                          b.edges[0], b.edges[1], b.edges[2]};
-    const WideSpan<N> span = span_of<N>(edges);
-    switch (span.rank) {
-    case 3:
-        return detail::visit_solid_axes(a, b, visit);
-    case 2:
-        return detail::visit_plane_axes(a, b, span.normal, visit);
-    default:
-        return detail::visit_line_axes(span, visit);
-    }
-}
-
 template <std::size_t K>
 struct WideInterval {
     WideInt<K> low, high;
@@ -287,16 +170,6 @@ template <std::size_t N, std::size_t M>
         interval.high = interval.high + reach;
     }
     return interval;
-}
-
-// Whether the closed shapes have a point in common.
-template <std::size_t N>
-[[nodiscard]] bool shapes_intersect(const ExactShape<N>& a, const ExactShape<N>& b) {
-    return !visit_axes(a, b, [&](AxisId, const auto& axis) {
-        const auto on_a = project(a, axis);
-        const auto on_b = project(b, axis);
-        return on_a.high < on_b.low || on_b.high < on_a.low;
-    });
 }
 
 // Calls `solve` with the narrowest width (as std::integral_constant) that holds coordinates of

@@ -2,6 +2,7 @@
 
 #include "contact_point.hpp"
 #include "exact_contact.hpp"
+#include "extremes.hpp"
 #include "predicates.hpp"
 #include "sat.hpp"
 #include "sat_obb_obb.hpp"
@@ -14,17 +15,6 @@
 
 namespace obb {
 namespace {
-
-[[nodiscard]] double larger(double a, double b) { return a < b ? b : a; }
-[[nodiscard]] double reach(const Vec3& v) {
-    return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z)));
-}
-[[nodiscard]] double reach(const Triangle& t) {
-    return larger(reach(t[0]), larger(reach(t[1]), reach(t[2])));
-}
-[[nodiscard]] double reach(const Obb& box) {
-    return larger(reach(box.center), reach(box.half_extents));
-}
 
 [[nodiscard]] bool is_still(const LinearMotion& m) {
     return m.duration == 0 || m.velocity_a == m.velocity_b;
@@ -95,12 +85,15 @@ template <typename A, typename B>
     if (is_still(m)) {
         return test_still(a, b);
     }
+    const Vec3 velocity = m.velocity_b - m.velocity_a;
     MovingSat sat(m.duration);
-    visit_bounds<true>(a, b, m.velocity_b - m.velocity_a, sat);
+    visit_bounds<true>(a, b, velocity, sat);
     if (sat.verdict() != Verdict::kUnsure) {
         return {sat.verdict() == Verdict::kIntersecting, false};
     }
-    return {meets_exactly(a, b, m, sat.selection()), true};
+    AxisRecorder axes(m.duration);
+    visit_bounds<true>(a, b, velocity, axes);
+    return {meets_exactly(a, b, m, axes.selection()), true};
 }
 
 template <typename A, typename B>
@@ -120,12 +113,11 @@ template <typename A, typename B>
                                                       const LinearMotion& m) {
     AxisSelection selection;
     if (in_filter_range(a, b, m)) {
-        MovingSat sat(m.duration);
-        visit_bounds<true>(a, b, is_still(m) ? Vec3{0, 0, 0} : m.velocity_b - m.velocity_a, sat);
-        if (sat.verdict() == Verdict::kSeparated) {
+        AxisRecorder axes(m.duration);
+        if (visit_bounds<true>(a, b, m.velocity_b - m.velocity_a, axes)) {
             return std::nullopt;
         }
-        selection = sat.selection();
+        selection = axes.selection();
     }
     PairContact contact{};
     const bool meets = with_exact_pair(a, b, m, [&](const auto& pair) {

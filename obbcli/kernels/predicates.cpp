@@ -1,6 +1,7 @@
 #include "predicates.hpp"
 
-#include "exact_shape.hpp"
+#include "exact_axes.hpp"
+#include "extremes.hpp"
 
 #include <bit>
 #include <cmath>
@@ -16,16 +17,6 @@ namespace {
 constexpr double kTripleError = 16 * kUnitRoundoff;
 constexpr double kLargest = 0x1p100;
 constexpr double kTiny = 0x1p-900;
-
-[[nodiscard]] double smaller(double a, double b) { return b < a ? b : a; }
-[[nodiscard]] double larger(double a, double b) { return a < b ? b : a; }
-[[nodiscard]] double smallest(double a, double b, double c) { return smaller(smaller(a, b), c); }
-[[nodiscard]] double largest(double a, double b, double c) { return larger(larger(a, b), c); }
-
-// std::fmax is a library call on x86-64, and no component here is NaN.
-[[nodiscard]] double reach(const Vec3& v) {
-    return largest(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
-}
 
 enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
 
@@ -167,11 +158,7 @@ struct Filter {
 }
 
 [[nodiscard]] bool within_range(const Triangle& a, const Triangle& b) {
-    double magnitude = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        magnitude = larger(magnitude, larger(reach(a[k]), reach(b[k])));
-    }
-    return magnitude <= kLargest;
+    return larger(reach(a), reach(b)) <= kLargest;
 }
 
 } // namespace

@@ -4,9 +4,9 @@
 
 #include "axis.hpp"
 #include "exact_contact.hpp"
+#include "extremes.hpp"
 #include "vec.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -87,46 +87,67 @@ struct AxisTimes {
 // Shapes in motion. Takes bounds until the entries and exits leave no time for contact.
 class MovingSat {
   public:
-    explicit MovingSat(double duration) : duration_(duration) {
-        times_.exit_low = times_.exit_high = duration;
+    explicit MovingSat(double duration) : duration_(duration), times_{0, 0, duration, duration} {}
+
+    [[nodiscard]] bool operator()(AxisId, const AxisBound& axis) {
+        add(axis_times(axis, duration_));
+        any_ = true;
+        return is_separated();
     }
+
+    void add(const AxisTimes& times) {
+        times_.entry_low = larger(times_.entry_low, times.entry_low);
+        times_.entry_high = larger(times_.entry_high, times.entry_high);
+        times_.exit_low = smaller(times_.exit_low, times.exit_low);
+        times_.exit_high = smaller(times_.exit_high, times.exit_high);
+    }
+
+    [[nodiscard]] bool is_separated() const { return times_.entry_low > times_.exit_high; }
+    [[nodiscard]] Verdict verdict() const {
+        return is_separated()                                 ? Verdict::kSeparated
+               : any_ && times_.entry_high <= times_.exit_low ? Verdict::kIntersecting
+                                                              : Verdict::kUnsure;
+    }
+    // Bounds on the first and last time, if there is contact at all.
+    [[nodiscard]] const AxisTimes& times() const { return times_; }
+
+  private:
+    double duration_;
+    AxisTimes times_;
+    bool any_ = false;
+};
+
+// The same, keeping what each axis says in order to select those that matter.
+class AxisRecorder {
+  public:
+    explicit AxisRecorder(double duration) : duration_(duration), sat_(duration) {}
 
     [[nodiscard]] bool operator()(AxisId id, const AxisBound& axis) {
         const std::size_t k = axis_index(id);
-        const AxisTimes times = axis_times(axis, duration_);
         seen_ |= 1u << k;
         bounds_[k] = axis;
-        each_[k] = times;
-        times_.entry_low = std::max(times_.entry_low, times.entry_low);
-        times_.entry_high = std::max(times_.entry_high, times.entry_high);
-        times_.exit_low = std::min(times_.exit_low, times.exit_low);
-        times_.exit_high = std::min(times_.exit_high, times.exit_high);
-        return times_.entry_low > times_.exit_high;
-    }
-
-    [[nodiscard]] Verdict verdict() const {
-        return times_.entry_low > times_.exit_high                  ? Verdict::kSeparated
-               : seen_ != 0 && times_.entry_high <= times_.exit_low ? Verdict::kIntersecting
-                                                                    : Verdict::kUnsure;
+        times_[k] = axis_times(axis, duration_);
+        sat_.add(times_[k]);
+        return sat_.is_separated();
     }
 
     // The axes that can have the latest entry or the earliest exit, or a gap of zero at the first
     // time. Axes that were not seen have no direction.
     [[nodiscard]] AxisSelection selection() const {
         AxisSelection selection{0, 0};
-        const double latest = std::min(times_.entry_high, times_.exit_high);
+        const AxisTimes& all = sat_.times();
+        const double latest = smaller(all.entry_high, all.exit_high);
         for (std::size_t k = 0; k < kAxisCount; ++k) {
             if (((seen_ >> k) & 1) == 0) {
                 continue;
             }
-            const AxisTimes& times = each_[k];
-            if (times.entry_high >= times_.entry_low || times.exit_low <= times_.exit_high) {
+            if (times_[k].entry_high >= all.entry_low || times_[k].exit_low <= all.exit_high) {
                 selection.binding |= 1u << k;
             }
             const AxisBound& axis = bounds_[k];
             const double speed = std::fabs(axis.speed) + axis.speed_error;
             const double slack =
-                2 * (axis.error + latest * axis.speed_error + (latest - times_.entry_low) * speed) +
+                2 * (axis.error + latest * axis.speed_error + (latest - all.entry_low) * speed) +
                 8 * kUnitRoundoff * latest * speed;
             const double way = latest * axis.speed;
             if (std::fabs(way - axis.low) <= slack || std::fabs(way - axis.high) <= slack) {
@@ -139,9 +160,9 @@ class MovingSat {
   private:
     double duration_;
     std::uint32_t seen_ = 0;
-    AxisTimes times_{0, 0, 0, 0};
-    std::array<AxisBound, kAxisCount> bounds_{};
-    std::array<AxisTimes, kAxisCount> each_{};
+    MovingSat sat_;
+    std::array<AxisBound, kAxisCount> bounds_;
+    std::array<AxisTimes, kAxisCount> times_;
 };
 
 } // namespace obb

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "axis.hpp"
+#include "extremes.hpp"
 #include "obb.hpp"
 #include "sat.hpp"
 #include "sat_obb_obb.hpp"
 #include "triangle.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace obb {
@@ -24,7 +24,7 @@ bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&&
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 d = b[k] - a.center;
         y[k] = {dot(a.axes[0], d), dot(a.axes[1], d), dot(a.axes[2], d)};
-        reach = std::max(reach, norm_1(d));
+        reach = larger(reach, norm_1(d));
     }
     reach += h.x + h.y + h.z;
     const double blur = kAxisError * reach + kUnderflow;
@@ -50,8 +50,8 @@ bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&&
         }
     }
     for (std::uint8_t i = 0; i < 3; ++i) {
-        const double high = std::max({y[0][i], y[1][i], y[2][i]});
-        const double low = std::min({y[0][i], y[1][i], y[2][i]});
+        const double high = largest(y[0][i], y[1][i], y[2][i]);
+        const double low = smallest(y[0][i], y[1][i], y[2][i]);
         if (visit({AxisKind::kFaceA, i, i}, {-h[i] - high, h[i] - low, w[i], blur, w_blur})) {
             return true;
         }
@@ -73,7 +73,7 @@ bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&&
             const double error = 4 * blur * (reach + size);
             const double speed_error = 4 * (blur * w_size + w_blur * size) + kUnderflow;
             if (visit({AxisKind::kEdgeEdge, i, j},
-                      {-radius - std::max(q, q2), radius - std::min(q, q2),
+                      {-radius - larger(q, q2), radius - smaller(q, q2),
                        kMoving ? l1 * w[i1] + l2 * w[i2] : 0, error + kUnderflow, speed_error})) {
                 return true;
             }

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "axis.hpp"
+#include "extremes.hpp"
 #include "sat.hpp"
 #include "triangle.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace obb {
@@ -22,8 +22,8 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
     const std::array<double, 3> e_size{norm_1(e[0]), norm_1(e[1]), norm_1(e[2])};
     const std::array<double, 3> f_size{norm_1(f[0]), norm_1(f[1]), norm_1(f[2])};
     const Vec3 d = b[0] - a[0];
-    const double reach = norm_1(d) + std::max({e_size[0], e_size[1], e_size[2]}) +
-                         std::max({f_size[0], f_size[1], f_size[2]});
+    const double reach = norm_1(d) + largest(e_size[0], e_size[1], e_size[2]) +
+                         largest(f_size[0], f_size[1], f_size[2]);
     const double w_size = norm_1(w);
     const Vec3 n = cross(e[0], e[1]);
     const Vec3 m = cross(f[0], f[1]);
@@ -40,8 +40,8 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
     const std::array<double, 3> me{dot(m, e[0]), dot(m, e[1]), dot(m, e[2])};
     {
         const double q = dot(n, d);
-        const double high = std::max({q, q + nf[0], q - nf[2]});
-        const double low = std::min({q, q + nf[0], q - nf[2]});
+        const double high = largest(q, q + nf[0], q - nf[2]);
+        const double low = smallest(q, q + nf[0], q - nf[2]);
         const double error = 3 * kError * n_size * reach;
         if (visit({AxisKind::kFaceA, 0, 0}, bound(n, -high, -low, n_size, error))) {
             return true;
@@ -49,8 +49,8 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
     }
     {
         const double q = dot(m, d);
-        const double high = std::max({0.0, me[0], -me[2]});
-        const double low = std::min({0.0, me[0], -me[2]});
+        const double high = largest(0.0, me[0], -me[2]);
+        const double low = smallest(0.0, me[0], -me[2]);
         const double error = 3 * kError * m_size * reach;
         if (visit({AxisKind::kFaceB, 0, 0}, bound(m, low - q, high - q, m_size, error))) {
             return true;
@@ -64,10 +64,10 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
                 continue;
             }
             const double q = dot(axis, b[j] - a[i]);
-            const double high_a = std::max(0.0, -nf[j]);
-            const double low_a = std::min(0.0, -nf[j]);
-            const double high_b = q + std::max(0.0, me[i]);
-            const double low_b = q + std::min(0.0, me[i]);
+            const double high_a = larger(0.0, -nf[j]);
+            const double low_a = smaller(0.0, -nf[j]);
+            const double high_b = q + larger(0.0, me[i]);
+            const double low_b = q + smaller(0.0, me[i]);
             const double size = e_size[i] * f_size[j];
             const double error = kError * (size * reach + n_size * f_size[j] + m_size * e_size[i]);
             if (visit({AxisKind::kEdgeEdge, i, j},
