@@ -7,21 +7,33 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 
+from obbcli import kernels
 from obbcli.arrays import as_floats, as_vector
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from obbcli.mesh import Mesh
-    from obbcli.tree import ObbTree
 
-    Shape: TypeAlias = ObbTree | Mesh | str | os.PathLike[str]
+class Surface(Protocol):
+    """What a body can be made of: an `ObbTree` or a `Mesh`."""
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lower and upper corner, (2, 3)."""
+
+    @property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """The default pivot, unposed, (3,)."""
+
+
+Shape: TypeAlias = "Surface | str | os.PathLike[str]"
 
 # What a matrix read from a file with ten digits still meets; boxes and bounds allow for it.
 ORTHONORMAL_TOLERANCE = 1e-9
@@ -58,6 +70,11 @@ class Pose:
         """Return whether the pose moves nothing; such a pose rounds nothing either."""
         return not self.translation.any() and np.array_equal(self.rotation, np.eye(3))
 
+    @cached_property
+    def kernel(self) -> kernels.Pose:
+        """The pose as the kernels see it."""
+        return kernels.Pose(self.rotation, self.translation)
+
     def apply(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the posed points, float64 (N, 3), rounded as the queries round them.
 
@@ -88,6 +105,7 @@ class Motion:
         linear_velocity: float64 (3,), read-only.
         angular_velocity: float64 (3,), read-only.
         pivot: float64 (3,), read-only, or None.
+        is_at_rest: whether neither velocity moves anything.
 
     Raises:
         MotionError: not three finite numbers.
@@ -96,6 +114,7 @@ class Motion:
     linear_velocity: NDArray[np.float64]
     angular_velocity: NDArray[np.float64]
     pivot: NDArray[np.float64] | None
+    is_at_rest: bool
 
     def __init__(
         self,
@@ -109,47 +128,7 @@ class Motion:
         object.__setattr__(self, "linear_velocity", velocity)
         object.__setattr__(self, "angular_velocity", spin)
         object.__setattr__(self, "pivot", point)
-
-    @property
-    def is_at_rest(self) -> bool:
-        """Return whether neither velocity moves anything."""
-        return not (self.linear_velocity.any() or self.angular_velocity.any())
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
-
-    Args:
-        shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        pose: where it is at t = 0.
-        motion: how it moves from there.
-
-    Raises:
-        MotionError: an argument is of another kind.
-    """
-
-    shape: Shape
-    pose: Pose = field(default_factory=Pose)
-    motion: Motion = field(default_factory=Motion)
-
-    def __post_init__(self) -> None:
-        # Trees and meshes are told by what they have: they belong to layers above this one.
-        if not (isinstance(self.shape, (str, os.PathLike)) or hasattr(self.shape, "bounds")):
-            _refuse("shape", self.shape, "pass an ObbTree, a Mesh or a path")
-        if not isinstance(self.pose, Pose):
-            _refuse("pose", self.pose, "pass a Pose")
-        if not isinstance(self.motion, Motion):
-            _refuse("motion", self.motion, "pass a Motion")
-
-
-def as_body(shape: Body | Shape) -> Body:
-    """Return a `Body` as it is, and anything else at rest where its file put it.
-
-    Raises:
-        MotionError: neither a body nor a tree, a mesh or a path.
-    """
-    return shape if isinstance(shape, Body) else Body(shape)
+        object.__setattr__(self, "is_at_rest", not (velocity.any() or spin.any()))
 
 
 def rotation_matrix(vector: ArrayLike, *, degrees: bool = False) -> NDArray[np.float64]:
@@ -204,7 +183,7 @@ def _trigonometry(angle: float, degrees: bool) -> tuple[float, float, float]:
 
 def _as_rotation(rotation: ArrayLike | None) -> NDArray[np.float64]:
     """Return a checked, read-only rotation matrix from a matrix, a rotation vector or None."""
-    if rotation is None or np.ndim(rotation) == 1:
+    if rotation is None or _is_vector(rotation):
         matrix = rotation_matrix((0.0, 0.0, 0.0) if rotation is None else rotation)
         matrix.setflags(write=False)
         return matrix
@@ -223,6 +202,14 @@ def _as_rotation(rotation: ArrayLike | None) -> NDArray[np.float64]:
     return matrix
 
 
+def _is_vector(value: ArrayLike) -> bool:
+    """Return whether a value has one dimension; ragged lists have none."""
+    try:
+        return np.ndim(value) == 1
+    except ValueError:
+        return False
+
+
 def _vector_or_zero(value: ArrayLike | None, name: str) -> NDArray[np.float64]:
     """Return a checked, read-only (3,) array; None stands for zero."""
     return as_vector((0.0, 0.0, 0.0) if value is None else value, name, MotionError)
@@ -231,3 +218,43 @@ def _vector_or_zero(value: ArrayLike | None, name: str) -> NDArray[np.float64]:
 def _refuse(name: str, value: object, remedy: str) -> None:
     """Raise for an argument of another kind."""
     raise MotionError(name, f"is of type {type(value).__name__}", remedy)
+
+
+_AS_LOADED = Pose()
+_AT_REST = Motion()
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
+
+    Args:
+        shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        pose: where it is at t = 0.
+        motion: how it moves from there.
+
+    Raises:
+        MotionError: an argument is of another kind.
+    """
+
+    shape: Shape
+    pose: Pose = _AS_LOADED
+    motion: Motion = _AT_REST
+
+    def __post_init__(self) -> None:
+        # Told by what it has: trees belong to a layer above this one.
+        if not (isinstance(self.shape, (str, os.PathLike)) or hasattr(self.shape, "bounds")):
+            _refuse("shape", self.shape, "pass an ObbTree, a Mesh or a path")
+        if not isinstance(self.pose, Pose):
+            _refuse("pose", self.pose, "pass a Pose")
+        if not isinstance(self.motion, Motion):
+            _refuse("motion", self.motion, "pass a Motion")
+
+
+def as_body(shape: Body | Shape) -> Body:
+    """Return a `Body` as it is, and anything else at rest where its file put it.
+
+    Raises:
+        MotionError: neither a body nor a tree, a mesh or a path.
+    """
+    return shape if isinstance(shape, Body) else Body(shape)

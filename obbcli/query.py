@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import time
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
@@ -16,13 +15,12 @@ from obbcli.results import Collision, QueryStats, Status
 from obbcli.tree import ObbTree, load_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import numpy as np
     from numpy.typing import NDArray
 
     from obbcli.motion import Shape
 
+_EXACT = Accuracy()
 _NO_DEPTH_LIMIT = 2**32 - 1
 _NO_LIMIT = 2**64 - 1
 # Between two looks at clock and signals: a few milliseconds.
@@ -57,38 +55,35 @@ def collide(
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
-    accuracy = Accuracy() if accuracy is None else accuracy
+    accuracy = _EXACT if accuracy is None else accuracy
     body_a, body_b = as_body(a), as_body(b)
     _require_rest(body_a, body_b, duration, accuracy, solid)
-    seconds: dict[str, float] = {}
-    with _clock(seconds, "load"):
-        tree_a, tree_b = _trees(body_a, body_b)
-    with _clock(seconds, "query"):
-        query = _static_query(
-            tree_a, body_a, tree_b, body_b, accuracy=accuracy, all_pairs=False, limit=_NO_LIMIT
-        )
-        is_complete = _run(query, (tree_a, tree_b), accuracy)
+    start = time.perf_counter()
+    tree_a, tree_b = _trees(body_a, body_b)
+    loaded = time.perf_counter()
+    query = _static_query(tree_a, body_a, tree_b, body_b, accuracy=accuracy, all_pairs=False)
+    is_complete = _run(query, (tree_a, tree_b), accuracy)
+    ended = time.perf_counter()
     status = Status.SEPARATED
+    witness = None
     if query.is_contact:
         status = Status.OVERLAP_AT_START
+        if not query.is_by_boxes:
+            witness = tuple(query.pairs()[0].tolist())
     elif not is_complete:
         status = Status.UNRESOLVED
-    pairs = query.pairs()
     return Collision(
         status=status,
-        witness=(int(pairs[0, 0]), int(pairs[0, 1])) if len(pairs) else None,
+        witness=witness,
         approximate=query.is_by_boxes,
         error_bound=query.error_bound,
         stats=QueryStats(
-            box_tests=query.box_tests,
-            triangle_tests=query.triangle_tests,
-            exact_triangle_tests=query.exact_triangle_tests,
-            pops=query.pops,
-            nodes_built_a=tree_a.node_count,
-            nodes_built_b=tree_b.node_count,
-            nodes_possible_a=tree_a.possible_node_count,
-            nodes_possible_b=tree_b.possible_node_count,
-            seconds=seconds,
+            *query.counts(),
+            tree_a.node_count,
+            tree_b.node_count,
+            tree_a.possible_node_count,
+            tree_b.possible_node_count,
+            {"load": loaded - start, "query": ended - loaded},
         ),
     )
 
@@ -119,7 +114,7 @@ def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -
         body_a,
         tree_b,
         body_b,
-        accuracy=Accuracy(),
+        accuracy=_EXACT,
         all_pairs=True,
         limit=_NO_LIMIT if limit is None else limit,
     )
@@ -134,7 +129,7 @@ def _require_rest(
     if duration is not None and not 0 <= duration < float("inf"):
         raise MotionError("duration", f"is {duration}", "use a finite number of at least 0 seconds")
     asked = {
-        "a moving body": not (a.motion.is_at_rest and b.motion.is_at_rest) and duration != 0,
+        "a moving body": duration != 0 and not (a.motion.is_at_rest and b.motion.is_at_rest),
         "solid=True": solid,
         "clearance > 0": accuracy.clearance > 0,
         "method='sampled'": accuracy.method == "sampled",
@@ -170,22 +165,20 @@ def _static_query(
     *,
     accuracy: Accuracy,
     all_pairs: bool,
-    limit: int,
+    limit: int = _NO_LIMIT,
 ) -> kernels.StaticQuery:
     """Return the kernels' query, not yet advanced."""
     try:
         return kernels.StaticQuery(
             tree_a.kernel,
-            a.pose.rotation,
-            a.pose.translation,
+            a.pose.kernel,
             tree_b.kernel,
-            b.pose.rotation,
-            b.pose.translation,
-            all_pairs=all_pairs,
-            boxes_for_leaves=accuracy.leaves == "boxes",
-            max_depth_a=_depth(accuracy.max_depth_a),
-            max_depth_b=_depth(accuracy.max_depth_b),
-            limit=limit,
+            b.pose.kernel,
+            all_pairs,
+            accuracy.leaves == "boxes",
+            _depth(accuracy.max_depth_a),
+            _depth(accuracy.max_depth_b),
+            limit,
         )
     except ValueError as fault:
         raise MotionError("pose", str(fault), "move or scale the bodies") from fault
@@ -199,23 +192,15 @@ def _run(
     query: kernels.StaticQuery, trees: tuple[ObbTree, ObbTree], accuracy: Accuracy | None
 ) -> bool:
     """Advance a query to its end or to a limit of `accuracy`; return whether it ended."""
-    most = _NO_LIMIT if accuracy is None else accuracy.max_iterations
+    left = _NO_LIMIT if accuracy is None else accuracy.max_iterations
     timeout = None if accuracy is None else accuracy.timeout
     stop = None if timeout is None else time.monotonic() + timeout
     try:
-        while True:
-            if query.advance(min(_POPS_A_SLICE, most - query.pops)):
-                return True
-            if query.pops >= most or (stop is not None and time.monotonic() >= stop):
+        while not query.advance(min(_POPS_A_SLICE, left)):
+            left -= _POPS_A_SLICE
+            if left <= 0 or (stop is not None and time.monotonic() >= stop):
                 return False
+        return True
     except kernels.TreeError as fault:
         names = " or ".join(sorted({tree.source or "a tree" for tree in trees}))
         raise TreeFileError(names, str(fault), "build it again from the mesh") from fault
-
-
-@contextmanager
-def _clock(seconds: dict[str, float], stage: str) -> Iterator[None]:
-    """Note the wall time of a stage."""
-    start = time.perf_counter()
-    yield
-    seconds[stage] = time.perf_counter() - start

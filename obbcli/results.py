@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import UnresolvedError
 
@@ -32,8 +32,7 @@ class Status(str, Enum):
         return self.value
 
 
-@dataclass(frozen=True, kw_only=True)
-class QueryStats:
+class QueryStats(NamedTuple):
     """What a question cost.
 
     Attributes:

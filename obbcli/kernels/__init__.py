@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from obbcli.kernels._core import (
     Fit,
+    Pose,
     Split,
     StaticQuery,
     Tree,
@@ -22,4 +23,4 @@ if not keeps_denormals():
         "loaded before), which would void the proofs of obbtree; import obbcli first, or remove it"
     )
 
-__all__ = ["Fit", "Split", "StaticQuery", "Tree", "TreeBuilder", "TreeError"]
+__all__ = ["Fit", "Pose", "Split", "StaticQuery", "Tree", "TreeBuilder", "TreeError"]

@@ -77,18 +77,6 @@ void init_tree(Tree* self, Rows<double, 3> vertices, Rows<std::uint32_t, 3> corn
     new (self) Tree{vertices, corners, triangle_ids, nodes, view};
 }
 
-obb::Pose pose_of(const nb::ndarray<const double, nb::shape<3, 3>, nb::c_contig>& rotation,
-                  const nb::ndarray<const double, nb::shape<3>, nb::c_contig>& translation) {
-    obb::Pose pose;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            pose.rotation.rows[i][k] = rotation(i, k);
-        }
-        pose.translation[i] = translation(i);
-    }
-    return pose;
-}
-
 using Built = std::tuple<Owned<std::uint8_t, -1, 64>, Owned<std::uint32_t, -1>, int>;
 
 Built finish_build(obb::TreeBuilder& builder) {
@@ -160,36 +148,45 @@ void bind_tree(nb::module_& m) {
         .def("finish", &finish_build);
 }
 
+void init_pose(
+    obb::Pose* self,
+    const nb::ndarray<const double, nb::numpy, nb::shape<3, 3>, nb::c_contig>& rotation,
+    const nb::ndarray<const double, nb::numpy, nb::shape<3>, nb::c_contig>& translation) {
+    new (self) obb::Pose;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            self->rotation.rows[i][k] = rotation(i, k);
+        }
+        self->translation[i] = translation(i);
+    }
+}
+
 void bind_static_query(nb::module_& m) {
-    using Matrix = nb::ndarray<const double, nb::shape<3, 3>, nb::c_contig>;
-    using Vector = nb::ndarray<const double, nb::shape<3>, nb::c_contig>;
+    nb::class_<obb::Pose>(m, "Pose").def("__init__", &init_pose, "rotation"_a, "translation"_a);
     nb::class_<obb::StaticQuery>(m, "StaticQuery")
         .def(
             "__init__",
-            [](obb::StaticQuery* self, const Tree& a, const Matrix& rotation_a,
-               const Vector& translation_a, const Tree& b, const Matrix& rotation_b,
-               const Vector& translation_b, bool all_pairs, bool boxes_for_leaves,
+            [](obb::StaticQuery* self, const Tree& a, const obb::Pose& pose_a, const Tree& b,
+               const obb::Pose& pose_b, bool all_pairs, bool boxes_for_leaves,
                std::uint32_t max_depth_a, std::uint32_t max_depth_b, std::uint64_t limit) {
                 new (self) obb::StaticQuery(
-                    a.view, pose_of(rotation_a, translation_a), b.view,
-                    pose_of(rotation_b, translation_b),
+                    a.view, pose_a, b.view, pose_b,
                     {all_pairs, boxes_for_leaves, max_depth_a, max_depth_b, limit});
             },
-            "a"_a, "rotation_a"_a, "translation_a"_a, "b"_a, "rotation_b"_a, "translation_b"_a,
-            nb::kw_only(), "all_pairs"_a, "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a,
-            "limit"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
+            "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "all_pairs"_a, "boxes_for_leaves"_a,
+            "max_depth_a"_a, "max_depth_b"_a, "limit"_a, nb::keep_alive<1, 2>(),
+            nb::keep_alive<1, 4>())
         .def("advance", &obb::StaticQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
         .def("pairs", &pairs_of)
         .def_prop_ro("is_contact", &obb::StaticQuery::is_contact)
         .def_prop_ro("is_by_boxes", &obb::StaticQuery::is_by_boxes)
         .def_prop_ro("error_bound", &obb::StaticQuery::error_bound)
-        .def_prop_ro("box_tests", [](const obb::StaticQuery& q) { return q.counts().box_tests; })
-        .def_prop_ro("triangle_tests",
-                     [](const obb::StaticQuery& q) { return q.counts().triangle_tests; })
-        .def_prop_ro("exact_triangle_tests",
-                     [](const obb::StaticQuery& q) { return q.counts().exact_triangle_tests; })
-        .def_prop_ro("pops", [](const obb::StaticQuery& q) { return q.counts().pops; });
+        // One call for all the counters: reading them one by one would cost more than many a query.
+        .def("counts", [](const obb::StaticQuery& q) {
+            const obb::StaticQueryCounts& c = q.counts();
+            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
+        });
 }
 
 } // namespace

@@ -24,15 +24,20 @@ struct alignas(64) Node {
 static_assert(sizeof(Node) == 64);
 
 // Axes of the box, as rows. This function *defines* the box: containment is proven for its results.
-[[nodiscard]] inline std::array<Vec3, 3> axes_of(const std::array<float, 4>& rotation) {
-    const double w = rotation[0], x = rotation[1], y = rotation[2], z = rotation[3];
-    const double s = 2.0 / (w * w + x * x + y * y + z * z);
-    const double wx = s * w * x, wy = s * w * y, wz = s * w * z;
-    const double xx = s * x * x, xy = s * x * y, xz = s * x * z;
-    const double yy = s * y * y, yz = s * y * z, zz = s * z * z;
-    return {{{1 - yy - zz, xy + wz, xz - wy},
-             {xy - wz, 1 - xx - zz, yz + wx},
-             {xz + wy, yz - wx, 1 - xx - yy}}};
+template <typename Real>
+[[nodiscard]] inline std::array<Vector3<Real>, 3> axes_of_quaternion(Real w, Real x, Real y,
+                                                                     Real z) {
+    const Real s = 2.0 / (w * w + x * x + y * y + z * z);
+    const Real wx = s * w * x, wy = s * w * y, wz = s * w * z;
+    const Real xx = s * x * x, xy = s * x * y, xz = s * x * z;
+    const Real yy = s * y * y, yz = s * y * z, zz = s * z * z;
+    return {{{1.0 - yy - zz, xy + wz, xz - wy},
+             {xy - wz, 1.0 - xx - zz, yz + wx},
+             {xz + wy, yz - wx, 1.0 - xx - yy}}};
+}
+
+[[nodiscard]] inline std::array<Vec3, 3> axes_of(const std::array<float, 4>& q) {
+    return axes_of_quaternion<double>(q[0], q[1], q[2], q[3]);
 }
 
 [[nodiscard]] inline Vec3 half_extents_of(const Node& node) {

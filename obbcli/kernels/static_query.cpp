@@ -41,10 +41,6 @@ double skew_of(const Mat3& m) {
     return skew;
 }
 
-double longest(Vec3 half_extents) { return norm_inf(half_extents); }
-
-Vec3 middle(const Triangle& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
-
 // Coordinates of a posed mesh stay below three times its largest coordinate plus the translation.
 void require_range(const PosedTree& body) {
     if (body.pose().is_identity()) {
@@ -62,26 +58,51 @@ void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
     matrix_ = matrix;
     offset_ = offset;
     is_moved_ = !(matrix == Mat3::identity() && offset == Vec3{0, 0, 0});
-    exponent_ = exponent;
     scale_ = std::ldexp(1.0, tree_->scale_exponent - exponent);
+    const int half = -exponent / 2;
+    vertex_scales_ = {std::ldexp(1.0, half), std::ldexp(1.0, -exponent - half)};
 }
 
-Obb PosedTree::box(const NodeRef& ref) const {
-    const Node& node = tree_->node(ref);
-    Obb box{scale_ * node.center, axes_of(node.rotation), scale_ * half_extents_of(node)};
+template <typename Real>
+BasicObb<Real> PosedTree::in_frame(BasicObb<Real> box) const {
+    const auto turned = [&](Vector3<Real> v) {
+        const auto& m = matrix_.rows;
+        return Vector3<Real>{m[0].x * v.x + m[0].y * v.y + m[0].z * v.z,
+                             m[1].x * v.x + m[1].y * v.y + m[1].z * v.z,
+                             m[2].x * v.x + m[2].y * v.y + m[2].z * v.z};
+    };
+    const auto scaled_by = [&](Vector3<Real> v) {
+        return Vector3<Real>{scale_ * v.x, scale_ * v.y, scale_ * v.z};
+    };
+    box.center = scaled_by(box.center);
+    box.half_extents = scaled_by(box.half_extents);
     if (is_moved_) {
-        box.center = matrix_ * box.center + offset_;
-        for (Vec3& axis : box.axes) {
-            axis = matrix_ * axis;
+        const Vector3<Real> c = turned(box.center);
+        box.center = {c.x + offset_.x, c.y + offset_.y, c.z + offset_.z};
+        for (Vector3<Real>& axis : box.axes) {
+            axis = turned(axis);
         }
     }
     return box;
 }
 
+Obb PosedTree::box(const Node& node) const {
+    return in_frame(Obb{node.center, axes_of(node.rotation), half_extents_of(node)});
+}
+
+BasicObb<Pack> PosedTree::boxes(const Node& first, const Node& second) const {
+    const auto& p = first.rotation;
+    const auto& q = second.rotation;
+    return in_frame(BasicObb<Pack>{
+        packed(first.center, second.center),
+        axes_of_quaternion(Pack{p[0], q[0]}, Pack{p[1], q[1]}, Pack{p[2], q[2]}, Pack{p[3], q[3]}),
+        packed(half_extents_of(first), half_extents_of(second))});
+}
+
 Triangle PosedTree::triangle_in_frame(const NodeRef& ref) const {
     Triangle t = tree_->triangle(ref.begin);
     for (Vec3& v : t) {
-        v = scaled(v, -exponent_);
+        v = vertex_scales_[1] * (vertex_scales_[0] * v);
         v = is_moved_ ? matrix_ * v + offset_ : v;
     }
     return t;
@@ -100,8 +121,10 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
     require_range(a_);
     require_range(b_);
     set_frames();
-    const Pair roots{a.root(), b.root()};
-    if (!are_apart(shape_of(a_, roots.a), shape_of(b_, roots.b))) {
+    Pair roots;
+    reach(a_, a.root(), options.max_depth_a, roots.a);
+    reach(b_, b.root(), options.max_depth_b, roots.b);
+    if (!are_apart(roots.a, roots.b)) {
         stack_.push_back(roots);
     }
 }
@@ -135,47 +158,44 @@ void StaticQuery::set_frames() {
     bound_ = {64 * kUnitRoundoff + 8 * skew_of(matrix), 0x1p-46 * 8.0 + tiny};
 }
 
-StaticQuery::Kind StaticQuery::kind_of(const PosedTree& body, const NodeRef& ref,
-                                       std::uint32_t max_depth) const {
+void StaticQuery::reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
+                        Side& side) const {
+    side.ref = ref;
+    side.is_open = false;
     if (ref.is_triangle()) {
-        return Kind::kTriangle;
+        side.triangle = body.triangle_in_frame(ref);
+        return;
     }
-    if (ref.depth >= max_depth) {
-        return Kind::kBox;
-    }
-    const bool is_coarse = options_.boxes_for_leaves && TreeView::is_leaf(body.tree().node(ref));
-    return is_coarse ? Kind::kBox : Kind::kOpen;
+    const Node& node = body.tree().node(ref);
+    side.box = body.box(node);
+    side.is_open = is_open(node, ref, max_depth);
 }
 
-StaticQuery::Shape StaticQuery::shape_of(const PosedTree& body, const NodeRef& ref) {
-    Shape shape;
-    shape.is_triangle = ref.is_triangle();
-    if (shape.is_triangle) {
-        shape.triangle = body.triangle_in_frame(ref);
-    } else {
-        shape.box = body.box(ref);
-    }
-    return shape;
+bool StaticQuery::is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const {
+    return ref.depth < max_depth && !(options_.boxes_for_leaves && TreeView::is_leaf(node));
 }
 
-bool StaticQuery::are_apart(const Shape& a, const Shape& b) {
-    if (a.is_triangle && b.is_triangle) {
+Vec3 StaticQuery::middle(const Side& side) {
+    const Triangle& t = side.triangle;
+    return side.ref.is_triangle() ? (1.0 / 3.0) * (t[0] + t[1] + t[2]) : side.box.center;
+}
+
+bool StaticQuery::are_apart(const Side& a, const Side& b) {
+    if (a.ref.is_triangle() && b.ref.is_triangle()) {
         return false; // the exact test decides
     }
     ++counts_.box_tests;
-    if (a.is_triangle) {
+    if (a.ref.is_triangle()) {
         return are_separated(b.box, a.triangle, bound_);
     }
-    return b.is_triangle ? are_separated(a.box, b.triangle, bound_)
-                         : are_separated(a.box, b.box, bound_);
+    return b.ref.is_triangle() ? are_separated(a.box, b.triangle, bound_)
+                               : are_separated(a.box, b.box, bound_);
 }
 
 bool StaticQuery::advance(std::uint64_t max_pops) {
     for (; !stack_.empty() && max_pops > 0; --max_pops) {
-        const Pair pair = stack_.back();
-        stack_.pop_back();
         ++counts_.pops;
-        visit(pair);
+        visit();
     }
     if (stack_.empty() && !is_finished_) {
         finish();
@@ -184,53 +204,112 @@ bool StaticQuery::advance(std::uint64_t max_pops) {
 }
 
 // The larger box is opened. A node that cannot be opened leaves it to the other.
-void StaticQuery::visit(const Pair& pair) {
-    const Kind kind_a = kind_of(a_, pair.a, options_.max_depth_a);
-    const Kind kind_b = kind_of(b_, pair.b, options_.max_depth_b);
-    const Shape a = shape_of(a_, pair.a), b = shape_of(b_, pair.b);
-    if (kind_a != Kind::kOpen && kind_b != Kind::kOpen) {
-        meet(pair, a, b);
-        return;
-    }
-    const bool opens_a =
-        kind_b != Kind::kOpen ||
-        (kind_a == Kind::kOpen && longest(a.box.half_extents) >= longest(b.box.half_extents));
-    if (opens_a) {
-        open<true>(pair, b);
+void StaticQuery::visit() {
+    const Side &a = stack_.back().a, &b = stack_.back().b;
+    if (!a.is_open && !b.is_open) {
+        const Pair pair = stack_.back();
+        stack_.pop_back();
+        meet(pair);
+    } else if (!b.is_open ||
+               (a.is_open && norm_inf(a.box.half_extents) >= norm_inf(b.box.half_extents))) {
+        open<true>();
     } else {
-        open<false>(pair, a);
+        open<false>();
     }
 }
 
-// Pushes the children that are not proven apart from the other shape, the nearest last, so that it
-// is visited first.
 template <bool kOpensA>
-void StaticQuery::open(const Pair& pair, const Shape& other) {
+void StaticQuery::push(const Side& child, const Side& other) {
+    Pair& pair = stack_.emplace_back();
+    (kOpensA ? pair.a : pair.b) = child;
+    (kOpensA ? pair.b : pair.a) = other;
+}
+
+// Replaces the pair on top by those of its children that are not proven apart from the other side,
+// the nearest on top.
+template <bool kOpensA>
+void StaticQuery::open() {
     const PosedTree& body = kOpensA ? a_ : b_;
-    const NodeRef& ref = kOpensA ? pair.a : pair.b;
-    const NodeRef& other_ref = kOpensA ? pair.b : pair.a;
-    const auto push = [&](const NodeRef& child) {
-        const Shape shape = shape_of(body, child);
-        const bool apart = kOpensA ? are_apart(shape, other) : are_apart(other, shape);
-        if (!apart) {
-            stack_.push_back(kOpensA ? Pair{child, other_ref} : Pair{other_ref, child});
-        }
-        const Vec3 center = shape.is_triangle ? middle(shape.triangle) : shape.box.center;
-        const Vec3 target = other.is_triangle ? middle(other.triangle) : other.box.center;
-        return std::pair{!apart, norm_1(center - target)};
-    };
+    const NodeRef ref = kOpensA ? stack_.back().a.ref : stack_.back().b.ref;
+    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
+    stack_.pop_back();
     const Node& node = body.tree().node(ref);
     if (TreeView::is_leaf(node)) {
-        for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
-            push(TreeView::triangle_ref(ref, i));
-        }
+        open_leaf<kOpensA>(ref, other);
         return;
     }
-    const auto [left, right] = TreeView::children(ref, node);
-    const auto [left_pushed, left_distance] = push(left);
-    const auto [right_pushed, right_distance] = push(right);
-    if (left_pushed && right_pushed && left_distance < right_distance) {
-        std::swap(stack_[stack_.size() - 1], stack_[stack_.size() - 2]);
+    std::array<Side, 2> children;
+    const auto apart = reach_children<kOpensA>(TreeView::children(ref, node), other, children);
+    std::size_t last = 1;
+    if (!apart[0] && !apart[1]) {
+        const Vec3 m = middle(other);
+        last = norm_1(middle(children[0]) - m) < norm_1(middle(children[1]) - m) ? 0 : 1;
+    }
+    for (const std::size_t k : {1 - last, last}) {
+        if (!apart[k]) {
+            push<kOpensA>(children[k], other);
+        }
+    }
+}
+
+template <bool kOpensA>
+void StaticQuery::open_leaf(const NodeRef& leaf, const Side& other) {
+    Side child;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+        reach(kOpensA ? a_ : b_, TreeView::triangle_ref(leaf, i), 0, child);
+        if (!(kOpensA ? are_apart(child, other) : are_apart(other, child))) {
+            push<kOpensA>(child, other);
+        }
+    }
+}
+
+// Two boxes against one are tested at once.
+template <bool kOpensA>
+std::array<bool, 2> StaticQuery::reach_children(const std::array<NodeRef, 2>& refs,
+                                                const Side& other, std::array<Side, 2>& children) {
+    const PosedTree& body = kOpensA ? a_ : b_;
+    const std::uint32_t max_depth = kOpensA ? options_.max_depth_a : options_.max_depth_b;
+    if (refs[0].is_triangle() || refs[1].is_triangle() || other.ref.is_triangle()) {
+        std::array<bool, 2> apart;
+        for (std::size_t k = 0; k < 2; ++k) {
+            reach(body, refs[k], max_depth, children[k]);
+            apart[k] = kOpensA ? are_apart(children[k], other) : are_apart(other, children[k]);
+        }
+        return apart;
+    }
+    const std::array<const Node*, 2> nodes{&body.tree().node(refs[0]), &body.tree().node(refs[1])};
+    const BasicObb<Pack> boxes = body.boxes(*nodes[0], *nodes[1]);
+    const BasicObb<Pack> twice = broadcast(other.box);
+    const PackMask mask =
+        kOpensA ? are_separated(boxes, twice, bound_) : are_separated(twice, boxes, bound_);
+    counts_.box_tests += 2;
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (mask[k] == 0) {
+            children[k].ref = refs[k];
+            children[k].is_open = is_open(*nodes[k], refs[k], max_depth);
+            children[k].box = lane(boxes, k);
+        }
+    }
+    return {mask[0] != 0, mask[1] != 0};
+}
+
+void StaticQuery::meet(const Pair& pair) {
+    if (!pair.a.ref.is_triangle() || !pair.b.ref.is_triangle()) {
+        is_by_boxes_ = true;
+        error_bound_ = distance_bound(pair);
+        stack_.clear();
+        return;
+    }
+    ++counts_.triangle_tests;
+    const TriangleVerdict verdict =
+        test_triangles(a_.triangle(pair.a.ref), b_.triangle(pair.b.ref));
+    counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
+    if (!verdict.intersects) {
+        return;
+    }
+    pairs_.push_back({a_.id(pair.a.ref), b_.id(pair.b.ref)});
+    if (!options_.all_pairs || pairs_.size() >= options_.limit) {
+        stack_.clear();
     }
 }
 
@@ -239,38 +318,19 @@ void StaticQuery::open(const Pair& pair, const Shape& other) {
 // bound e itself; an axis from nearly parallel edges, of length s, by e / s, but turning one shape
 // until they are parallel moves nothing by more than s times its size, so the gap is below
 // 4 sqrt(e size) whatever s is. With e = 2^-45 size + absolute that is the slack added here.
-double StaticQuery::distance_bound(const Shape& a, const Shape& b) const {
-    const auto diagonal = [](const Shape& s) {
-        return s.is_triangle ? 0.0 : 2.0 * norm(s.box.half_extents);
+double StaticQuery::distance_bound(const Pair& pair) const {
+    const auto diagonal = [](const Side& s) {
+        return s.ref.is_triangle() ? 0.0 : 2.0 * norm(s.box.half_extents);
     };
-    const auto size = [&](const Shape& s) {
+    const auto size = [&](const Side& s) {
         const Triangle& t = s.triangle;
-        return s.is_triangle ? norm(t[1] - t[0]) + norm(t[2] - t[0]) : diagonal(s);
+        return s.ref.is_triangle() ? norm(t[1] - t[0]) + norm(t[2] - t[0]) : diagonal(s);
     };
-    const double both = size(a) + size(b);
+    const double both = size(pair.a) + size(pair.b);
     const double slack =
         0x1p-16 * both + 4.0 * std::sqrt(bound_.absolute * both) + 4.0 * bound_.absolute;
-    const double bound = std::ldexp(diagonal(a) + diagonal(b) + slack, exponent_);
+    const double bound = std::ldexp(diagonal(pair.a) + diagonal(pair.b) + slack, exponent_);
     return std::fmin(bound, std::numeric_limits<double>::max());
-}
-
-void StaticQuery::meet(const Pair& pair, const Shape& a, const Shape& b) {
-    if (!a.is_triangle || !b.is_triangle) {
-        is_by_boxes_ = true;
-        error_bound_ = distance_bound(a, b);
-        stack_.clear();
-        return;
-    }
-    ++counts_.triangle_tests;
-    const TriangleVerdict verdict = test_triangles(a_.triangle(pair.a), b_.triangle(pair.b));
-    counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
-    if (!verdict.intersects) {
-        return;
-    }
-    pairs_.push_back({a_.id(pair.a), b_.id(pair.b)});
-    if (!options_.all_pairs || pairs_.size() >= options_.limit) {
-        stack_.clear();
-    }
 }
 
 void StaticQuery::finish() {

@@ -5,6 +5,7 @@
 #include "pose.hpp"
 #include "tree.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -46,7 +47,8 @@ class PosedTree {
 
     [[nodiscard]] const TreeView& tree() const { return *tree_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
-    [[nodiscard]] Obb box(const NodeRef& ref) const;
+    [[nodiscard]] Obb box(const Node& node) const;
+    [[nodiscard]] BasicObb<Pack> boxes(const Node& first, const Node& second) const;
     [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
     [[nodiscard]] std::uint32_t id(const NodeRef& ref) const;
@@ -57,8 +59,12 @@ class PosedTree {
     Mat3 matrix_ = Mat3::identity();
     Vec3 offset_{0, 0, 0};
     bool is_moved_ = false;
-    int exponent_ = 0;
+    template <typename Real>
+    [[nodiscard]] BasicObb<Real> in_frame(BasicObb<Real> box) const;
+
+    // Nodes are in the tree's unit; vertices in mesh units need two factors, as one may overflow.
     double scale_ = 1;
+    std::array<double, 2> vertex_scales_{1, 1};
 };
 
 // The query as an object: advanced by so many pops at a time, so that callers can look at the clock
@@ -83,27 +89,37 @@ class StaticQuery {
     [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
 
   private:
-    struct Pair {
-        NodeRef a, b;
-    };
-    // A node as the tests see it: its triangle, or its box.
-    struct Shape {
-        bool is_triangle;
+    // A node as the tests see it, made once, when it is reached through its parent, and carried
+    // along: its box, or the triangle that needs none.
+    struct Side {
+        NodeRef ref;
+        bool is_open; // has children or triangles to descend to
         Obb box;
         Triangle triangle;
     };
-    enum class Kind { kTriangle, kBox, kOpen };
+    struct Pair {
+        Side a, b;
+    };
 
     void set_frames();
-    [[nodiscard]] Kind kind_of(const PosedTree& body, const NodeRef& ref,
-                               std::uint32_t max_depth) const;
-    [[nodiscard]] static Shape shape_of(const PosedTree& body, const NodeRef& ref);
-    [[nodiscard]] bool are_apart(const Shape& a, const Shape& b);
-    void visit(const Pair& pair);
+    void reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
+               Side& side) const;
+    [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
+    [[nodiscard]] static Vec3 middle(const Side& side);
+    [[nodiscard]] bool are_apart(const Side& a, const Side& b);
+    void visit();
     template <bool kOpensA>
-    void open(const Pair& pair, const Shape& other);
-    void meet(const Pair& pair, const Shape& a, const Shape& b);
-    [[nodiscard]] double distance_bound(const Shape& a, const Shape& b) const;
+    void open();
+    template <bool kOpensA>
+    void open_leaf(const NodeRef& leaf, const Side& other);
+    template <bool kOpensA>
+    [[nodiscard]] std::array<bool, 2> reach_children(const std::array<NodeRef, 2>& refs,
+                                                     const Side& other,
+                                                     std::array<Side, 2>& children);
+    template <bool kOpensA>
+    void push(const Side& child, const Side& other);
+    void meet(const Pair& pair);
+    [[nodiscard]] double distance_bound(const Pair& pair) const;
     void finish();
 
     PosedTree a_, b_;

@@ -7,24 +7,33 @@
 
 namespace obb {
 
-struct Vec3 {
-    double x, y, z;
+// Of doubles, or of packs of doubles where several shapes are treated at once.
+template <typename Real>
+struct Vector3 {
+    Real x, y, z;
 
-    [[nodiscard]] constexpr double operator[](std::size_t k) const {
+    [[nodiscard]] constexpr Real operator[](std::size_t k) const {
         return k == 0 ? x : k == 1 ? y : z;
     }
-    [[nodiscard]] constexpr double& operator[](std::size_t k) {
-        return k == 0 ? x : k == 1 ? y : z;
+    [[nodiscard]] constexpr Real& operator[](std::size_t k) { return k == 0 ? x : k == 1 ? y : z; }
+
+    friend constexpr Vector3 operator+(Vector3 a, Vector3 b) {
+        return {a.x + b.x, a.y + b.y, a.z + b.z};
     }
-    friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+    friend constexpr Vector3 operator-(Vector3 a, Vector3 b) {
+        return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
+    friend constexpr Vector3 operator-(Vector3 a) { return {-a.x, -a.y, -a.z}; }
+    friend constexpr Vector3 operator*(Real s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
+    friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
 };
 
-[[nodiscard]] constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-[[nodiscard]] constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[nodiscard]] constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-[[nodiscard]] constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+using Vec3 = Vector3<double>;
 
-[[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <typename Real>
+[[nodiscard]] constexpr Real dot(Vector3<Real> a, Vector3<Real> b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 [[nodiscard]] constexpr Vec3 cross(Vec3 a, Vec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -36,7 +45,9 @@ struct Vec3 {
     return std::fabs(a.x) + std::fabs(a.y) + std::fabs(a.z);
 }
 [[nodiscard]] inline double norm_inf(Vec3 a) {
-    return std::fmax(std::fabs(a.x), std::fmax(std::fabs(a.y), std::fabs(a.z)));
+    const Vec3 b = abs(a);
+    const double yz = b.y < b.z ? b.z : b.y; // std::fmax is a call, for the sake of NaN
+    return b.x < yz ? yz : b.x;
 }
 
 // Rows of a 3x3 matrix.

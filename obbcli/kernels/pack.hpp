@@ -1,0 +1,33 @@
+// Two doubles treated as one: every machine in use has registers for that.
+#pragma once
+
+#include "vec.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace obb {
+
+using Pack = double __attribute__((vector_size(16)));
+using PackMask = std::int64_t __attribute__((vector_size(16))); // all bits or none a lane
+
+// The same kernels run on doubles and on packs through these few.
+[[nodiscard]] inline double absolute(double a) { return std::fabs(a); }
+[[nodiscard]] inline Pack absolute(Pack a) {
+    constexpr std::int64_t kAllButSign = 0x7fffffffffffffff;
+    return reinterpret_cast<Pack>(reinterpret_cast<PackMask>(a) &
+                                  PackMask{kAllButSign, kAllButSign});
+}
+[[nodiscard]] inline bool is_all(bool mask) { return mask; }
+[[nodiscard]] inline bool is_all(PackMask mask) { return (mask[0] & mask[1]) != 0; }
+
+[[nodiscard]] inline Vector3<Pack> packed(Vec3 a, Vec3 b) {
+    return {Pack{a.x, b.x}, Pack{a.y, b.y}, Pack{a.z, b.z}};
+}
+
+template <typename Real>
+[[nodiscard]] inline Real absolute_sum(Vector3<Real> a) {
+    return absolute(a.x) + absolute(a.y) + absolute(a.z);
+}
+
+} // namespace obb
