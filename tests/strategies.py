@@ -6,6 +6,7 @@ Scales reach from subnormals to 2^1000. Boxes, motion and meshes have files of t
 
 from __future__ import annotations
 
+from itertools import permutations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -43,14 +44,22 @@ class TrianglePair(NamedTuple):
     b: Any
 
 
+# Strategies are made once: making them anew in every draw costs more than drawing.
+ORDERS = st.sampled_from([list(order) for order in permutations(range(3))])
+INTEGER_POINTS = st.tuples(*[st.integers(-4, 4)] * 3)
+DYADIC_POINTS = st.tuples(*[st.integers(-32, 32)] * 3)
+ANY_POINTS = st.tuples(*[st.floats(-4, 4)] * 3)
+
+
 @st.composite
 def points(draw: Draw) -> Floats:
     """Return a point: small integers, dyadic fractions or any doubles up to 4."""
     kind = draw(st.sampled_from(("integer", "integer", "dyadic", "any")))
     if kind == "any":
-        return np.array(draw(st.tuples(*[st.floats(-4, 4)] * 3)))
-    reach, step = (4, 1.0) if kind == "integer" else (32, 8.0)
-    return np.array(draw(st.tuples(*[st.integers(-reach, reach)] * 3))) / step
+        return np.array(draw(ANY_POINTS))
+    if kind == "dyadic":
+        return np.array(draw(DYADIC_POINTS)) / 8.0
+    return np.array(draw(INTEGER_POINTS), dtype=np.float64)
 
 
 @st.composite
@@ -66,7 +75,7 @@ def triangles(draw: Draw) -> Floats:
         c = b + draw(points()) * 2.0 ** -draw(st.integers(8, 56))
     else:
         c, b = a, (b if kind == "repeated" else a)
-    return draw(st.permutations((a, b, c)).map(np.array))
+    return np.array([a, b, c])[draw(ORDERS)]
 
 
 @st.composite
@@ -74,7 +83,7 @@ def triangle_pairs(draw: Draw) -> TrianglePair:
     """Return two triangles: unrelated, touching, coplanar, nearly parallel, nudged, scaled."""
     a = draw(triangles())
     b = draw(_related_triangles(a))
-    b = b[list(draw(st.permutations(range(3))))]
+    b = b[draw(ORDERS)]
     a, b = draw(rescaled((a, b)))
     if draw(st.integers(0, 3)) == 0:
         b = draw(nudged(b))

@@ -12,6 +12,7 @@ import numpy as np
 from hypothesis import strategies as st
 from oracles_exact import Box
 from strategies import (
+    ORDERS,
     SCALES,
     TINY_EXPONENTS,
     nudged,
@@ -29,7 +30,16 @@ if TYPE_CHECKING:
     Draw = Callable[..., Any]
 
 UNIT = st.sampled_from((-1.0, 1.0))
-FRACTION = st.sampled_from((-1.0, -0.5, 0.0, 0.5, 1.0))
+UNITS = st.tuples(UNIT, UNIT, UNIT)
+FRACTIONS = st.tuples(*[st.sampled_from((-1.0, -0.5, 0.0, 0.5, 1.0))] * 3)
+INTEGER_LENGTHS = st.tuples(*[st.integers(1, 4)] * 3)
+ANY_LENGTHS = st.tuples(*[st.floats(0, 4)] * 3)
+EXPONENTS = st.tuples(*[st.integers(-12, 6)] * 3)
+EIGHTHS = st.tuples(*[st.integers(1, 32)] * 3)
+FLAT_AXES = st.sets(st.integers(0, 2), min_size=1)
+QUATERNIONS = st.tuples(*[st.floats(-1, 1)] * 4)
+SMALL_AXES = st.tuples(*[st.integers(-3, 3)] * 3)
+PLANE_STEPS = st.tuples(*[st.integers(-8, 8)] * 6)
 
 
 class BoxPair(NamedTuple):
@@ -57,14 +67,14 @@ def half_extents(draw: Draw) -> Floats:
     """Return three half extents: integers, dyadic, flat, rods and plates, any doubles."""
     kind = draw(st.sampled_from(("integer", "dyadic", "flat", "extreme", "any")))
     if kind == "integer":
-        return np.array(draw(st.tuples(*[st.integers(1, 4)] * 3)), dtype=np.float64)
+        return np.array(draw(INTEGER_LENGTHS), dtype=np.float64)
     if kind == "any":
-        return np.array(draw(st.tuples(*[st.floats(0, 4)] * 3)))
+        return np.array(draw(ANY_LENGTHS))
     if kind == "extreme":
-        return np.ldexp(1.0, np.array(draw(st.tuples(*[st.integers(-12, 6)] * 3))))
-    numbers = np.array(draw(st.tuples(*[st.integers(1, 32)] * 3))) / 8
+        return np.ldexp(1.0, np.array(draw(EXPONENTS)))
+    numbers = np.array(draw(EIGHTHS)) / 8
     if kind == "flat":
-        numbers[list(draw(st.sets(st.integers(0, 2), min_size=1)))] = 0.0
+        numbers[list(draw(FLAT_AXES))] = 0.0
     return numbers
 
 
@@ -77,7 +87,7 @@ def box_pairs(draw: Draw) -> BoxPair:
         st.sampled_from(("unrelated", "beside", "beside", "gap", "meeting", "inside", "same"))
     )
     if kind == "same":
-        b = Box(a.center, a.axes[list(draw(st.permutations(range(3))))], a.half_extents)
+        b = Box(a.center, a.axes[draw(ORDERS)], a.half_extents)
     elif kind == "inside":
         b = Box(a.center, b.axes, b.half_extents * 2.0**-5)
     elif kind == "meeting":
@@ -99,8 +109,8 @@ def triangle_boxes(draw: Draw) -> TriangleBox:
     place = box.center + draw(_surface_offset(box))
     kind = draw(st.sampled_from(("unrelated", "vertex", "edge", "face", "in face plane", "gap")))
     if kind == "in face plane":
-        i, j = draw(st.permutations(range(3)))[:2]
-        steps = draw(st.tuples(*[st.integers(-8, 8)] * 6))
+        i, j, _ = draw(ORDERS)
+        steps = draw(PLANE_STEPS)
         arms = np.array(steps).reshape(3, 2) @ box.axes[[i, j]] / 2
         triangle = place + arms
     elif kind == "edge":
@@ -125,14 +135,14 @@ def _related_axes(draw: Draw, axes: Floats) -> Floats:
     if kind == "nearly":
         return axes @ draw(small_rotations())
     if kind == "permuted":
-        return axes[list(draw(st.permutations(range(3))))] * draw(UNIT)
+        return axes[draw(ORDERS)] * draw(UNIT)
     return axes
 
 
 @st.composite
 def _surface_offset(draw: Draw, box: Box) -> Floats:
     """Return a step from the center to a corner or to a dyadic place of an edge or a face."""
-    weights = np.array(draw(st.tuples(*[FRACTION] * 3)))
+    weights = np.array(draw(FRACTIONS))
     weights[draw(st.integers(0, 2))] = draw(UNIT)
     return (weights * box.half_extents) @ box.axes
 
@@ -145,7 +155,7 @@ def _beside(draw: Draw, a: Box, b: Box, gap: float) -> Box:
     """
     i, side = draw(st.integers(0, 2)), draw(UNIT)
     normal = side * a.axes[i]
-    place, corner = np.array(draw(st.tuples(*[FRACTION] * 6))).reshape(2, 3)
+    place, corner = np.array(draw(FRACTIONS) + draw(FRACTIONS)).reshape(2, 3)
     place[i] = side
     towards = b.axes @ normal
     corner = np.where(np.abs(towards) > 1e-12, -np.sign(towards), corner)
@@ -190,9 +200,8 @@ def _nudged_box(draw: Draw, box: Box) -> Box:
 def rotations(draw: Draw) -> Floats:
     """Return a matrix (3, 3) with rows orthonormal to rounding, right- or left-handed."""
     kind = draw(st.sampled_from(("aligned", "aligned", "tiny", "any", "any")))
-    order = list(draw(st.permutations(range(3))))
-    signs = np.array(draw(st.tuples(UNIT, UNIT, UNIT)))
-    aligned = np.eye(3)[order] * signs
+    signs = np.array(draw(UNITS))
+    aligned = np.eye(3)[draw(ORDERS)] * signs
     if kind == "aligned":
         return aligned
     return aligned @ draw(small_rotations() if kind == "tiny" else proper_rotations())
@@ -201,7 +210,7 @@ def rotations(draw: Draw) -> Floats:
 @st.composite
 def proper_rotations(draw: Draw) -> Floats:
     """Return a right-handed rotation by any angle, orthonormal to rounding."""
-    quaternion = np.array(draw(st.tuples(*[st.floats(-1, 1)] * 4)))
+    quaternion = np.array(draw(QUATERNIONS))
     largest = np.abs(quaternion).max()
     # Divided first: the squares of subnormals are zero.
     return _rotation(quaternion / largest if largest > 1e-300 else np.array([1.0, 0.0, 0.0, 0.0]))
@@ -211,7 +220,7 @@ def proper_rotations(draw: Draw) -> Floats:
 def small_rotations(draw: Draw) -> Floats:
     """Return a rotation by 1e-4 to 1e-16 about any axis."""
     angle = 10.0 ** -draw(TINY_EXPONENTS)
-    axis = draw(st.tuples(*[st.integers(-3, 3)] * 3))
+    axis = draw(SMALL_AXES)
     return _rotation(np.array([1.0, *(angle / 2 * n for n in axis)]))
 
 
