@@ -8,7 +8,6 @@ import click
 
 from obbcli import __version__
 from obbcli.cli.options import GuardedHelp
-from obbcli.cli.output import write_stdout
 
 # Name: module of this package; in the order a newcomer meets them.
 _COMMANDS = {
@@ -56,5 +55,7 @@ def app(context: click.Context) -> int:
     Lengths are in the meshes' own unit, angles in radians unless --degrees is given.
     """
     if context.invoked_subcommand is None:
+        from obbcli.cli.output import write_stdout
+
         write_stdout(_WELCOME)
     return 0

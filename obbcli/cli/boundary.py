@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
-import traceback
 from contextlib import contextmanager
 from enum import IntEnum
 from typing import TYPE_CHECKING, TextIO
@@ -13,7 +11,6 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 from obbcli.errors import ObbError, UnresolvedError
-from obbcli.report.record import error_part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -64,6 +61,9 @@ def guarded(command: Callable[[], int], words: Sequence[str]) -> int:
         return end.exit_code
     except (Exception, KeyboardInterrupt) as fault:  # noqa: BLE001  # the boundary
         if "--debug" in words:
+            # Imported where faults are rare, like all that only faults need: start-up counts.
+            import traceback
+
             traceback.print_exc()
         return report(as_error(fault), as_json="--json" in words)
     return code
@@ -73,10 +73,12 @@ def report(error: ObbError, *, as_json: bool) -> ExitCode:
     """Write an error to stderr and return its exit code."""
     code = exit_code(error)
     if as_json:
-        text = json.dumps(error_part(error, int(code)))
+        from obbcli.report.document import to_json
+        from obbcli.report.record import error_part
+
+        note(to_json(error_part(error, int(code))).rstrip())
     else:
-        text = f"error: {error}" if error.where else f"error: {error.fault}; {error.remedy}"
-    note(text)
+        note(f"error: {error}" if error.where else f"error: {error.fault}; {error.remedy}")
     return code
 
 

@@ -128,7 +128,7 @@ def _ask(
 def _with_load_time(answer: Collision, load: float) -> Collision:
     """Return the answer with the time that the files took: they were read before the question."""
     seconds = {**answer.stats.seconds, "load": load}
-    return replace(answer, stats=replace(answer.stats, seconds=seconds))
+    return replace(answer, stats=answer.stats._replace(seconds=seconds))
 
 
 def _pairs(bodies: tuple[Body, Body], limit: int | None) -> tuple[NDArray[int64], bool]:

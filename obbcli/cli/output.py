@@ -6,7 +6,6 @@ import contextlib
 import io
 import os
 import sys
-import tempfile
 from typing import TYPE_CHECKING, TextIO
 
 from obbcli.cli.boundary import OutputError, writing, writing_stdout
@@ -67,8 +66,11 @@ def write_file(path: Path, text: str) -> None:
     Raises:
         OutputError: it cannot be written.
     """
-    path = path.resolve()
+    # Half of a command's own modules, for the few answers that go to a file.
+    import tempfile
+
     with writing(path):
+        path = path.resolve()
         if path.exists() and not path.is_file():
             # A device or a pipe: there is nothing to rename, and it must not be replaced.
             path.write_text(text, encoding="utf-8")

@@ -5,7 +5,6 @@ A record is a dict of plain values in a fixed order; JSON and tables are both ma
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass
 from os import PathLike
@@ -81,7 +80,7 @@ def _body_part(body: Body) -> Record:
 
 def stats_part(stats: QueryStats) -> Record:
     """Return what a question cost."""
-    part = dict(vars(stats))
+    part = stats._asdict()
     part["seconds"] = seconds_part(stats.seconds)
     return part
 
@@ -113,6 +112,8 @@ def file_sha256(path: str | Path) -> str:
     Raises:
         OSError: the file cannot be read.
     """
+    import hashlib
+
     digest = hashlib.sha256()
     with Path(path).open("rb") as file:
         while chunk := file.read(_CHUNK):
