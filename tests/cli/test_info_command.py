@@ -1,0 +1,137 @@
+"""`obbtree info`: what it says of meshes and trees, and what `--check` finds."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+
+import pytest
+from cube_files import CUBE_FACES, cube, obj
+
+
+def test_info_of_a_mesh(here, obbtree):
+    document = obbtree("info", "cube.stl", "--json").json
+
+    assert list(document) == ["schema", "tool_version", "inputs", "result", "stats"]
+    assert document["schema"] == "obbtree/info/1"
+    assert document["inputs"]["file"] == {
+        "path": "cube.stl",
+        "sha256": hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest(),
+        "triangle_count": 12,
+    }
+    assert document["result"] == {
+        "kind": "mesh",
+        "triangle_count": 12,
+        "vertex_count": 36,
+        "bounds": [[0, 0, 0], [1, 1, 1]],
+        "size": math.sqrt(3),
+        "surface_centroid": [0.5, 0.5, 0.5],
+        "is_watertight": True,
+        "degenerate_count": 0,
+        "duplicate_count": 0,
+        "tree": None,
+        "check": None,
+    }
+
+
+def test_info_counts_what_is_odd(here, obbtree):
+    lines = obj(cube()).splitlines()
+    # The first face goes, the second comes twice, and one has two corners at one place.
+    faces = [line for line in lines if line.startswith("f")]
+    odd = [line for line in lines if line != faces[0]] + [faces[1], "f 1 1 2"]
+    (here / "odd.obj").write_text("\n".join(odd) + "\n")
+
+    result = obbtree("info", "odd.obj", "--json").json["result"]
+
+    assert result["triangle_count"] == len(CUBE_FACES) + 1
+    assert result["is_watertight"] is False
+    assert result["duplicate_count"] == 1
+    assert result["degenerate_count"] == 1
+
+
+def test_info_of_a_tree(here, obbtree):
+    obbtree("build", "cube.stl", "--leaf-size", 2)
+
+    result = obbtree("info", "cube.obbt", "--json").json["result"]
+
+    tree = result["tree"]
+    assert result["kind"] == "tree"
+    assert result["is_watertight"] is True
+    assert (tree["fit"], tree["split"], tree["leaf_size"]) == ("triangles", "median", 2)
+    assert tree["source"] == "cube.stl"
+    assert tree["source_sha256"] == hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest()
+    assert tree["source_state"] == "unchanged"
+    assert sum(level["box_count"] for level in tree["levels"]) == tree["node_count"]
+    assert tree["levels"][0]["box_count"] == 1
+    # Some box holds the cube, and none that is fitted to it is much larger.
+    assert 1 <= tree["levels"][0]["volume"] < 3 * math.sqrt(3)
+    assert tree["bytes_per_triangle"] == tree["nbytes"] / 12
+
+
+def test_info_of_a_mesh_and_of_its_tree_agree(here, obbtree):
+    obbtree("build", "touching.obj")
+    of_mesh = obbtree("info", "touching.obj", "--json").json["result"]
+    of_tree = obbtree("info", "touching.obbt", "--json").json["result"]
+
+    for result in (of_mesh, of_tree):
+        for key in ("kind", "tree"):
+            del result[key]
+    assert json.dumps(of_mesh) == json.dumps(of_tree)
+
+
+@pytest.mark.parametrize(
+    ("change", "state", "shown"),
+    [
+        (lambda path: path.write_bytes(path.read_bytes() + b" "), "changed", "CHANGED since"),
+        (lambda path: path.unlink(), "not found", "not found beside the tree"),
+        (lambda _: None, "unchanged", "unchanged since"),
+    ],
+)
+def test_info_says_what_became_of_the_source(here, obbtree, change, state, shown):
+    obbtree("build", "touching.obj")
+    change(here / "touching.obj")
+
+    assert shown in obbtree("info", "touching.obbt").out
+    document = obbtree("info", "touching.obbt", "--json").json
+    assert document["result"]["tree"]["source_state"] == state
+
+
+@pytest.mark.parametrize("name", ["cube.stl", "cube.obbt"])
+def test_info_check_passes_on_what_is_sound(here, obbtree, name):
+    obbtree("build", "cube.stl")
+
+    assert obbtree("info", name, "--check", "--json").json["result"]["check"] == "passed"
+    assert (
+        "passed: every triangle lies in all boxes above it" in obbtree("info", name, "--check").out
+    )
+
+
+def test_info_check_finds_every_flipped_byte(here, obbtree):
+    obbtree("build", "cube.stl")
+    data = (here / "cube.obbt").read_bytes()
+
+    for position in range(len(data)):
+        flipped = bytearray(data)
+        flipped[position] ^= 0x40
+        (here / "flipped.obbt").write_bytes(flipped)
+        ended = obbtree("info", "flipped.obbt", "--check", "--no-verify")
+        assert ended.code == 3, position
+        assert ended.out == ""
+        assert ended.err.startswith("error: flipped.obbt")
+
+
+def test_info_of_sizes_beyond_a_double_has_no_infinity(here, obbtree):
+    (here / "vast.obj").write_text("v -1.7e308 0 0\nv 1.7e308 1 0\nv 0 1.7e308 0\nf 1 2 3\n")
+
+    ended = obbtree("info", "vast.obj", "--json")
+
+    assert ended.json["result"]["size"] is None
+    assert "beyond the largest double" in obbtree("info", "vast.obj").out
+
+
+def test_info_table_shows_names_as_they_are(here, obbtree):
+    name = "[red]gér:smile:.obj"
+    (here / name).write_text(obj(cube()))
+
+    assert f"{name} (mesh)" in obbtree("info", name).out

@@ -1,0 +1,71 @@
+"""Progress bars: on a terminal, for long work, and only where they are wanted."""
+
+from __future__ import annotations
+
+import io
+from contextlib import redirect_stderr
+
+import pytest
+
+from obbcli.cli.progress import WORTH_A_BAR, bar
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture(autouse=True)
+def ordinary_terminal(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+
+
+def test_long_work_on_a_terminal_shows_a_bar():
+    with redirect_stderr(Terminal()) as terminal, bar("building", WORTH_A_BAR, wanted=True) as move:
+        move(0.25)
+        move(0.75)
+
+    assert "building" in terminal.getvalue()
+
+
+def test_bar_shows_names_as_they_are():
+    with (
+        redirect_stderr(Terminal()) as terminal,
+        bar("[red].stl", WORTH_A_BAR, wanted=True) as move,
+    ):
+        move(0.5)
+
+    assert "[red].stl" in terminal.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("stream", "triangles", "wanted"),
+    [
+        (Terminal(), WORTH_A_BAR - 1, True),
+        (Terminal(), WORTH_A_BAR, False),
+        (io.StringIO(), WORTH_A_BAR, True),
+    ],
+)
+def test_no_bar_for_short_work_nor_unasked_nor_without_a_terminal(stream, triangles, wanted):
+    with redirect_stderr(stream), bar("building", triangles, wanted=wanted) as move:
+        assert move is None
+
+    assert stream.getvalue() == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "is_drawn"), [((), True), (("--quiet",), False), (("--no-progress",), False)]
+)
+@pytest.mark.parametrize("command", ["build", "collide"])
+def test_commands_draw_a_bar_unless_told_not_to(
+    here, monkeypatch, obbtree, command, words, is_drawn
+):
+    monkeypatch.setattr("obbcli.cli.progress.WORTH_A_BAR", 1)
+    files = ("cube.stl",) if command == "build" else ("cube.stl", "apart.obj")
+
+    with redirect_stderr(Terminal()) as terminal:
+        obbtree(command, *files, *words)
+
+    assert ("cube.stl" in terminal.getvalue()) == is_drawn

@@ -1,0 +1,156 @@
+"""Records: the parts shared by all documents, and documents that parse everywhere."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import math
+
+import numpy as np
+import pytest
+
+from obbcli import Body, Mesh, MeshError, Motion, Pose, __version__
+from obbcli.report.document import to_json
+from obbcli.report.record import document, error_part, file_sha256, finite, motion_part
+from obbcli.report.table import Table, count, draw, length, seconds, size
+
+SQUARE = Mesh([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], [[0, 1, 2], [0, 2, 3]])
+
+
+def test_document_names_its_schema_and_tool_first():
+    record = document("collide", {}, result={"status": "separated"})
+
+    assert list(record) == ["schema", "tool_version", "inputs", "result"]
+    assert record["schema"] == "obbtree/collide/1"
+    assert record["tool_version"] == __version__
+
+
+def test_motion_reports_the_posed_centroid_as_pivot():
+    body = Body(SQUARE, Pose((0, 0, math.pi / 2), (10, 0, 0)), Motion((1, 0, 0)))
+
+    part = motion_part((body, Body(SQUARE)), None)
+
+    np.testing.assert_allclose(part["a"]["pivot"], [9, 1, 0], atol=1e-15)
+    assert part["b"]["pivot"] == [1.0, 1.0, 0.0]
+    assert part["a"]["linear_velocity"] == [1.0, 0.0, 0.0]
+
+
+def test_motion_reports_a_given_pivot_as_it_is():
+    body = Body(SQUARE, Pose(translation=(10, 0, 0)), Motion(pivot=(5, 6, 7)))
+
+    assert motion_part((body, body), 2)["a"]["pivot"] == [5.0, 6.0, 7.0]
+
+
+@pytest.mark.parametrize(
+    ("velocity", "duration", "used"),
+    [((0, 0, 0), None, 0.0), ((0, 1, 0), None, 1.0), ((0, 1, 0), 3, 3.0), ((0, 0, 0), 3, 3.0)],
+)
+def test_duration_defaults_to_one_where_a_body_moves(velocity, duration, used):
+    bodies = Body(SQUARE), Body(SQUARE, motion=Motion(velocity))
+
+    assert motion_part(bodies, duration)["duration"] == used
+
+
+def test_error_part_tells_place_fault_and_remedy_apart():
+    part = error_part(MeshError("gear.obj:12", "uses vertex 9 of 8", "count from 1"), 3)
+
+    assert part == {
+        "error": "uses vertex 9 of 8",
+        "kind": "MeshError",
+        "code": 3,
+        "where": "gear.obj:12",
+        "remedy": "count from 1",
+    }
+
+
+@pytest.mark.parametrize("value", [5e-324, 0.1, 1 / 3, 1.7976931348623157e308, -0.0, 1e22])
+def test_numbers_of_a_document_round_trip(value):
+    text = to_json({"x": value})
+
+    assert math.copysign(1, json.loads(text)["x"]) == math.copysign(1, value)
+    assert json.loads(text)["x"] == value
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_document_never_holds_what_json_cannot(value):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        to_json({"x": value})
+    assert finite(value) is None
+
+
+def test_document_is_one_line_of_ascii_in_the_records_order():
+    text = to_json({"z": "gér\udc80.stl", "a": [1, 2]})
+
+    assert text == '{"z": "g\\u00e9r\\udc80.stl", "a": [1, 2]}\n'
+
+
+def test_file_sha256_is_that_of_the_bytes(tmp_path):
+    data = bytes(range(256)) * 9000
+    (tmp_path / "data").write_bytes(data)
+
+    assert file_sha256(tmp_path / "data") == hashlib.sha256(data).hexdigest()
+
+
+def drawn(*tables: Table) -> str:
+    text = io.StringIO()
+    draw(tables, text)
+    return text.getvalue()
+
+
+def test_table_without_headings_aligns_names_and_values():
+    assert drawn(Table([("a", "1"), ("longer", "two words")])) == "a       1\nlonger  two words\n"
+
+
+def test_table_with_headings_sets_numbers_flush_right():
+    lines = drawn(Table([("x.stl", "5"), ("y.stl", "1,000")], ("mesh", "count"))).splitlines()
+
+    assert lines[0].split() == ["mesh", "count"]
+    assert set(lines[1]) == {"─"}
+    assert [line.rindex(end) for line, end in zip(lines[2:], "50", strict=True)] == [
+        len(lines[3]) - 1
+    ] * 2
+
+
+def test_table_shows_cells_as_they_are():
+    cells = ":smile: [bold]x[/bold] [/]", "x" * 300
+
+    assert drawn(Table([cells])) == "  ".join(cells) + "\n"
+
+
+def test_tables_are_parted_by_an_empty_line_and_titled():
+    assert drawn(Table([("a", "b")]), Table([("c", "d")], title="more")) == "a  b\n\nmore\nc  d\n"
+
+
+def test_table_is_plain_in_a_file_and_styled_on_a_terminal(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm-256color")
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    terminal = Terminal()
+    draw([Table([("a", "b")])], terminal)
+
+    assert "\x1b[" in terminal.getvalue()
+    assert "\x1b[" not in drawn(Table([("a", "b")]))
+
+
+@pytest.mark.parametrize(
+    ("shown", "wanted"),
+    [
+        (count(1234567), "1,234,567"),
+        (length(0.123456789), "0.123457"),
+        (length(None), "beyond the largest double"),
+        (seconds(12.345), "12.35 s"),
+        (seconds(0.0123), "12.30 ms"),
+        (seconds(4.2e-5), "42 us"),
+        (size(1023), "1023 B"),
+        (size(1536), "1.5 KiB"),
+        (size(5 << 20), "5.0 MiB"),
+        (size(3 << 30), "3.0 GiB"),
+    ],
+)
+def test_quantities_carry_their_units(shown, wanted):
+    assert shown == wanted

@@ -1,0 +1,90 @@
+"""What starting costs: which modules a bare import and a quick command may load."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import obbcli
+
+HEAVY = ("numpy", "rich", "trimesh", "meshio", "scipy", "obbcli.kernels")
+
+
+def modules_after(code: str, *arguments: str) -> set[str]:
+    """Return the modules that a fresh interpreter holds after running `code`."""
+    report = "\nimport sys; print('\\n'.join(['', '#', *sys.modules]))"
+    child = subprocess.run(
+        [sys.executable, "-c", code + report, *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(child.stdout.rpartition("\n#\n")[2].split())
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import obbcli; obbcli.__version__; dir(obbcli)",
+        "from obbcli.cli import main; main(['--version'])",
+        "from obbcli.cli import main; main([])",
+        "from obbcli.cli import main; main(['--help'])",
+        "from obbcli.cli import main; main(['collide', '--help'])",
+        "from obbcli.cli import main; main(['build', '--help'])",
+        "from obbcli.cli import main; main(['collide', 'a.stl'])",
+    ],
+)
+def test_quick_commands_import_nothing_heavy(code):
+    assert not modules_after(code) & set(HEAVY)
+
+
+def test_bare_import_loads_no_part_of_the_package():
+    loaded = modules_after("import obbcli")
+
+    assert {name for name in loaded if name.startswith("obbcli")} == {"obbcli"}
+
+
+def test_collide_as_json_draws_no_table(tmp_path):
+    path = tmp_path / "one.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    code = "import sys; from obbcli.cli import main; main(['collide', *sys.argv[1:], '--json'])"
+
+    loaded = modules_after(code, str(path), str(path))
+
+    assert not loaded & {"rich", "trimesh", "meshio", "scipy"}
+
+
+@pytest.mark.parametrize("name", obbcli.__all__)
+def test_public_names_are_there(name):
+    assert getattr(obbcli, name) is not None
+    assert name in dir(obbcli)
+
+
+def test_names_lead_to_one_object():
+    assert obbcli.Pose is obbcli.Pose
+    from obbcli.motion import Pose
+
+    assert obbcli.Pose is Pose
+
+
+def test_unknown_names_are_refused():
+    with pytest.raises(AttributeError, match="'obbcli' has no attribute 'nonsense'"):
+        _ = obbcli.nonsense
+
+
+def test_version_is_that_of_the_project():
+    text = (Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+
+    assert re.search(r'^version = "(.*)"$', text, re.MULTILINE).group(1) == obbcli.__version__
+
+
+def test_module_runs_as_the_command():
+    child = subprocess.run(
+        [sys.executable, "-m", "obbcli", "--version"], capture_output=True, text=True, check=True
+    )
+
+    assert child.stdout == f"obbtree {obbcli.__version__}\n"
