@@ -190,6 +190,7 @@ Moments TreeBuilder::moments_of(Range range, Vec3 reference) const {
 void TreeBuilder::fit_box(Range range, const Moments& moments, Vec3 reference, Node& node) const {
     constexpr double kRelativeMargin = 0x1p-45;
     constexpr double kCenterMargin = 0x1p-50;
+    constexpr double kUnderflowMargin = 0x1p-900; // products of the tiniest coordinates vanish
 
     Moments by_corners;
     const Moments* chosen = &moments;
@@ -221,7 +222,8 @@ void TreeBuilder::fit_box(Range range, const Moments& moments, Vec3 reference, N
         node.center = node.center + (0.5 * (low[k] + high[k])) * axes[k];
         total += 0.5 * (high[k] - low[k]);
     }
-    const double margin = kRelativeMargin * total + kCenterMargin * norm_1(node.center);
+    const double margin =
+        kRelativeMargin * total + kCenterMargin * norm_1(node.center) + kUnderflowMargin;
     for (std::size_t k = 0; k < 3; ++k) {
         node.half_extents[k] = rounded_up(0.5 * (high[k] - low[k]) + margin);
     }
