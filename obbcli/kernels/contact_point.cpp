@@ -253,6 +253,9 @@ Vec3 face_normal(const Triangle& triangle, const Feature&, const Vec3& towards) 
 Vec3 face_normal(const Obb& box, const Feature& feature, const Vec3& towards) {
     Vec3 best = towards;
     double most = -2;
+    if (feature.dimension == 3) {
+        return best;
+    }
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 axis = unit(box.axes[i], towards);
         for (const int side : {-1, 1}) {

@@ -15,8 +15,8 @@ template <typename A, typename B>
                                  const Touch& touch);
 
 // Unit outward normal of the face that `feature` lies in; of several faces the one that points
-// along `towards` best. A triangle's normal is turned towards `towards`; where it has none, the
-// result is `towards`.
+// along `towards` best. A triangle's normal is turned towards `towards`. Where there is no such
+// face, of a triangle without area or a box that touches with no feature, it is `towards`.
 [[nodiscard]] Vec3 face_normal(const Triangle& triangle, const Feature& feature,
                                const Vec3& towards);
 [[nodiscard]] Vec3 face_normal(const Obb& box, const Feature& feature, const Vec3& towards);

@@ -148,6 +148,7 @@ class ExactContact {
             const std::array<double, 3> l = direction(axis);
             const double scale = side / std::sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
             touch.axis = id;
+            touch.side = static_cast<std::int8_t>(side);
             touch.normal = {scale * l[0], scale * l[1], scale * l[2]};
         }
     }

@@ -96,9 +96,20 @@ template <typename A, typename B>
     return {meets_exactly(a, b, m, axes.selection()), true};
 }
 
+// An exact face axis of a box is a product of the other two axes: its own axis up to sign.
+void orient(const Obb& box, std::size_t face, Touch& touch) {
+    touch.side = dot(box.axes[face], touch.normal) > 0 ? 1 : -1;
+}
+void orient(const Triangle&, std::size_t, Touch&) {}
+
 template <typename A, typename B>
 void describe(const A& a, const B& b, const LinearMotion& m, PairContact& contact) {
-    const Touch& touch = contact.touch;
+    Touch& touch = contact.touch;
+    if (touch.axis.kind == AxisKind::kFaceA) {
+        orient(a, touch.axis.a, touch);
+    } else if (touch.axis.kind == AxisKind::kFaceB) {
+        orient(b, touch.axis.b, touch);
+    }
     contact.point = contact_point(a, b, m, contact.time, touch);
     const Vec3 from_a = contact.point - contact.time * m.velocity_a;
     const Vec3 from_b = contact.point - contact.time * m.velocity_b;
@@ -160,17 +171,19 @@ template <typename A, typename B>
     return id.kind == AxisKind::kEdgeEdge ? AxisId{id.kind, id.b, id.a} : id;
 }
 
+[[nodiscard]] Touch swapped(const Touch& touch) {
+    // The edges' product turns round with the normal; every other axis stays as it is.
+    const bool turns = touch.axis.kind == AxisKind::kEdgeEdge;
+    return {swapped(touch.axis), static_cast<std::int8_t>(turns ? touch.side : -touch.side),
+            -touch.normal, touch.feature_b, touch.feature_a};
+}
+
 [[nodiscard]] PairContact swapped(const PairContact& c) {
-    return {c.time,
-            c.time_below,
-            c.last_time,
-            c.ends,
-            {swapped(c.touch.axis), -c.touch.normal, c.touch.feature_b, c.touch.feature_a},
-            c.point,
-            c.normal_b,
-            c.normal_a,
-            c.smooth_normal_b,
-            c.smooth_normal_a};
+    PairContact result = c;
+    result.touch = swapped(c.touch);
+    std::swap(result.normal_a, result.normal_b);
+    std::swap(result.smooth_normal_a, result.smooth_normal_b);
+    return result;
 }
 
 } // namespace

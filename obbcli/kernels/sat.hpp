@@ -89,7 +89,7 @@ class MovingSat {
   public:
     explicit MovingSat(double duration) : duration_(duration), times_{0, 0, duration, duration} {}
 
-    [[nodiscard]] bool operator()(AxisId, const AxisBound& axis) {
+    [[nodiscard, gnu::always_inline]] bool operator()(AxisId, const AxisBound& axis) {
         add(axis_times(axis, duration_));
         any_ = true;
         return is_separated();
