@@ -34,6 +34,9 @@ using Column = nb::ndarray<const T, nb::numpy, nb::shape<-1>, nb::c_contig, nb::
 template <typename Record, typename T, nb::ssize_t kColumns>
 std::span<const Record> records(const Rows<T, kColumns>& rows) {
     static_assert(sizeof(Record) == sizeof(T) * kColumns);
+    if (rows.shape(0) == 0) {
+        return {}; // the pointer of an empty array means nothing
+    }
     if (reinterpret_cast<std::uintptr_t>(rows.data()) % alignof(Record) != 0) {
         throw std::invalid_argument("array is not aligned");
     }
