@@ -71,7 +71,7 @@ def durations() -> st.SearchStrategy[float]:
 def _moving(draw: Draw, a: Any, b: Any, edges: Floats) -> Moving:
     size = float(np.abs(edges).max(initial=0.0)) or 1.0
     velocity_a, velocity_b = draw(_velocities(edges, _inside(a) - _inside(b), size))
-    landing = draw(st.sampled_from((0.5, 1.0, 0.125, 3.0, 0.0)))
+    landing = draw(st.sampled_from((0.5, 1.0, 0.125, 3.0, 0.5, 1.0, 3.0, 0.0)))
     # Taken back to time 0 from where they were drawn; exact for small numbers, else merely close.
     b = _shifted(b, (velocity_a - velocity_b) * landing)
     ends = (landing, landing, landing, landing + 1.0, 2 * landing, landing / 2, None)
@@ -83,7 +83,7 @@ def _moving(draw: Draw, a: Any, b: Any, edges: Floats) -> Moving:
         velocity_a, velocity_b = (np.ldexp(v, -exponent) for v in (velocity_a, velocity_b))
         duration = float(np.ldexp(duration, exponent))
     moving = Moving(a, b, velocity_a, velocity_b, duration)
-    return draw(_ending_at_contact(moving)) if draw(st.integers(0, 2)) == 0 else moving
+    return draw(_ending_at_contact(moving)) if draw(st.booleans()) else moving
 
 
 @st.composite
@@ -121,6 +121,8 @@ def _velocities(draw: Draw, edges: Floats, approach: Floats, size: float) -> tup
         relative = (edges[0] * i + edges[1] * j) / 2
     else:
         relative = np.array(draw(points())) * size
+    if not relative.any():
+        relative = np.array([1.0, -2.0, 0.5]) * size
     return common, common + relative
 
 
