@@ -48,12 +48,13 @@ def test_bare_import_loads_no_part_of_the_package():
     assert {name for name in loaded if name.startswith("obbcli")} == {"obbcli"}
 
 
-def test_collide_as_json_draws_no_table(tmp_path):
+@pytest.mark.parametrize("words", [("collide", "{0}", "{0}"), ("info", "{0}")])
+def test_answer_into_a_pipe_imports_neither_rich_nor_other_readers(tmp_path, words):
     path = tmp_path / "one.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    code = "import sys; from obbcli.cli import main; main(['collide', *sys.argv[1:], '--json'])"
+    code = "import sys; from obbcli.cli import main; main(sys.argv[1:])"
 
-    loaded = modules_after(code, str(path), str(path))
+    loaded = modules_after(code, *(word.format(path) for word in words))
 
     assert not loaded & {"rich", "trimesh", "meshio", "scipy"}
 

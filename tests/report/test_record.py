@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -122,19 +123,74 @@ def test_tables_are_parted_by_an_empty_line_and_titled():
     assert drawn(Table([("a", "b")]), Table([("c", "d")], title="more")) == "a  b\n\nmore\nc  d\n"
 
 
-def test_table_is_plain_in_a_file_and_styled_on_a_terminal(monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    monkeypatch.setenv("TERM", "xterm-256color")
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
 
-    class Terminal(io.StringIO):
-        def isatty(self) -> bool:
-            return True
+    def isatty(self) -> bool:
+        return True
 
+
+def drawn_on_a_terminal(*tables: Table) -> str:
     terminal = Terminal()
-    draw([Table([("a", "b")])], terminal)
+    draw(tables, terminal)
+    return terminal.getvalue()
 
-    assert "\x1b[" in terminal.getvalue()
-    assert "\x1b[" not in drawn(Table([("a", "b")]))
+
+@pytest.fixture
+def colours(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.delenv("FORCE_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLUMNS", "60")
+
+
+@pytest.mark.usefixtures("colours")
+def test_table_is_plain_in_a_file_and_styled_on_a_terminal():
+    table = Table([("a", "b")])
+
+    assert "\x1b[" in drawn_on_a_terminal(table)
+    assert "\x1b[" not in drawn(table)
+
+
+@pytest.mark.usefixtures("colours")
+@pytest.mark.parametrize(
+    "table",
+    [
+        Table([("a", "1"), ("longer", "two words")]),
+        Table([("x.stl", "5", ""), ("long name.stl", "1,000", "y")], ("mesh", "n", "flag")),
+        Table([("1", "2")], ("triangle of A", "triangle of B"), "a title"),
+    ],
+)
+def test_table_looks_alike_in_a_file_and_on_a_terminal(table):
+    styled = drawn_on_a_terminal(table, table)
+
+    plain = re.sub(r"\x1b\[[0-9;]*m", "", styled)
+    assert "".join(line.rstrip() + "\n" for line in plain.splitlines()) == drawn(table, table)
+
+
+@pytest.mark.usefixtures("colours")
+def test_table_is_folded_on_a_terminal_alone():
+    table = Table([("file", "x" * 100)])
+
+    assert max(map(len, drawn(table).splitlines())) == 106
+    assert "x" * 61 not in drawn_on_a_terminal(table)
+
+
+@pytest.mark.usefixtures("colours")
+def test_long_list_is_plain_everywhere():
+    table = Table([(str(i), str(i)) for i in range(1001)], ("A", "B"))
+
+    assert drawn_on_a_terminal(table) == drawn(table)
+
+
+def test_rule_is_ascii_where_the_encoding_is():
+    raw = io.BytesIO()
+    file = io.TextIOWrapper(raw, encoding="ascii")
+
+    draw([Table([("1", "2")], ("A", "B"))], file)
+    file.flush()
+
+    assert raw.getvalue() == b"A   B\n-----\n1   2\n"
 
 
 @pytest.mark.parametrize(
