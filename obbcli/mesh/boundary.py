@@ -70,10 +70,11 @@ def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
         if kind in _IGNORED or len(cells) == 0:
             continue
         if kind in _SURFACES or kind == "polygon":
-            corners = np.asarray(cells, dtype=np.int64)
+            corners = _corners(name, cells, _SURFACES.get(kind, 3))
             flat.append(_padded(corners[:, : _SURFACES.get(kind, corners.shape[1])]))
         elif kind in _VOLUMES:
-            solid.append(_faces_of(np.asarray(cells, dtype=np.int64), _VOLUMES[kind]))
+            least = 1 + max(corner for face in _VOLUMES[kind] for corner in face)
+            solid.append(_faces_of(_corners(name, cells, least), _VOLUMES[kind]))
         elif kind == "polyhedron":
             solid.append(_ragged([face for cell in cells for face in cell]))
         else:
@@ -84,6 +85,14 @@ def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
     return fans(
         *_unpadded(np.vstack([given, faces[once]]), np.hstack([given_counts, counts[once]]))
     )
+
+
+def _corners(name: str, cells: Any, least: int) -> NDArray[np.int64]:
+    """Return cells as an array of at least as many columns as their type has corners."""
+    corners = np.asarray(cells, dtype=np.int64)
+    if corners.ndim != 2 or corners.shape[1] < least:
+        raise UnknownCellError(f"{name} with {corners.shape[-1]} corners")
+    return corners
 
 
 def _padded(corners: NDArray[np.int64], wide: int = 4) -> Faces:

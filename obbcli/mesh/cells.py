@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from obbcli.mesh.boundary import UnknownCellError, surface
-from obbcli.mesh.claims import check_claims
-from obbcli.mesh.guard import fenced
+from obbcli.mesh.claims import check_claims, check_count
+from obbcli.mesh.guard import ending_files, fenced
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -39,13 +39,14 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
     def read(source: Source) -> MeshArrays:
         chosen = kind
         if kind == "gmsh" and not source.data.lstrip().startswith(b"$"):
-            chosen = "ansys"  # another format of the same suffix
+            chosen = "ansys"  # Fluent's format, of the same suffix
         check_claims(source, chosen)
         module = fenced(source, "meshio", lambda: import_module(f"meshio.{chosen}"))
-        with _as_file(source, suffix) as path:
+        with _as_file(source, suffix) as path, ending_files("meshio."):
             mesh = fenced(source, "meshio", lambda: module.read(str(path)))
         points = _points(source, mesh.points)
         blocks = [(block.type, block.data) for block in mesh.cells]
+        check_count(source, chosen, sum(len(data) for _, data in blocks))
         for number, (name, data) in enumerate(blocks):
             _check_indices(source, f"cell block {number} ({name})", data, len(points))
         try:

@@ -22,6 +22,8 @@ Result = TypeVar("Result")
 #: What a reader may take beside a multiple of the file's size: NumPy and XML trees cost so much.
 _LEAST_ROOM = 1 << 30
 _ROOM_PER_BYTE = 64
+#: How often a reader may ask for more at the end of a file; looking ahead takes a few.
+_MOST_IDLE = 1000
 #: NumPy's words where numbers end early in a text, which libraries take for the end of the data.
 _CUT_SHORT = "string or file could not be read to its end"
 
@@ -58,6 +60,69 @@ def fenced(source: Source, library: str, read: Callable[[], Result]) -> Result:
         raise source.error(
             f"{library} cannot read it: {kind}: {words}", "export it again or in another format"
         ) from fault
+
+
+class _EndingBytes(io.BufferedReader):
+    """A file that raises where its reader goes on asking after the end."""
+
+    _idle = 0
+
+    def readline(self, size: int | None = -1, /) -> bytes:
+        line = super().readline(-1 if size is None else size)
+        self._idle = _counted(self._idle, line)
+        return line
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        self._idle = _counted(self._idle, data)
+        return data
+
+
+class _EndingText(io.TextIOWrapper):
+    """The same for text; bytes that are no UTF-8 pass as they are."""
+
+    _idle = 0
+
+    def readline(self, size: int = -1, /) -> str:  # type: ignore[override]
+        line = super().readline(size)
+        self._idle = _counted(self._idle, line)
+        return line
+
+    def read(self, size: int | None = -1, /) -> str:
+        data = super().read(size)
+        self._idle = _counted(self._idle, data)
+        return data
+
+
+def _counted(idle: int, data: str | bytes) -> int:
+    """Return how often in a row nothing was read."""
+    if data:
+        return 0
+    if idle > _MOST_IDLE:
+        raise EOFError("the file ends too early")
+    return idle + 1
+
+
+def _ending_open(path: str | Path, mode: str = "r") -> io.BufferedIOBase | io.TextIOBase:
+    """Return an opened file whose end is an error to those who do not look for it."""
+    file = _EndingBytes(io.FileIO(path))
+    return file if "b" in mode else _EndingText(file, "utf-8", "surrogateescape")
+
+
+@contextlib.contextmanager
+def ending_files(package: str) -> Iterator[None]:
+    """Give the modules of a package files that end; several of meshio's readers never look.
+
+    A module's own `open` hides the built-in one, which no other code notices.
+    """
+    modules = [module for name, module in sys.modules.items() if name.startswith(package)]
+    for module in modules:
+        vars(module)["open"] = _ending_open
+    try:
+        yield
+    finally:
+        for module in modules:
+            vars(module).pop("open", None)
 
 
 @contextlib.contextmanager
