@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -28,8 +27,7 @@ SPLITS = ("median", "center")
 _UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
-@dataclass(frozen=True)
-class BuildOptions:
+class BuildOptions(NamedTuple):
     """How trees are built, and whether files may be replaced."""
 
     fit: Any
@@ -134,7 +132,7 @@ def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -
     built = sum(not isinstance(file, ObbError) for file in files)
     if built:
         record = build_record(meshes, files, _options_part(how))
-        emit(record, build_tables, replace(common, output=None), bare=lambda _: "")
+        emit(record, build_tables, common._replace(output=None), bare=lambda _: "")
     if len(meshes) > 1 and built < len(meshes) and not common.quiet:
         note(f"note: {len(meshes) - built} of {len(meshes)} trees were not built")
     return code

@@ -6,9 +6,8 @@ import hashlib
 import re
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.progress import bar
@@ -35,8 +34,7 @@ _SIGNATURES = (
 _HEAD_BYTES = 1 << 16
 
 
-@dataclass(frozen=True)
-class Input:
+class Input(NamedTuple):
     """A shape that was read.
 
     Attributes:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
@@ -86,13 +85,17 @@ def vector(group: str, name: str, text: str) -> Decorator:
     return option(group, name, nargs=3, type=Finite(), metavar="X Y Z", help=text)
 
 
-def gathered(name: str, cls: type, options: tuple[Decorator, ...]) -> Decorator:
-    """Return a decorator that adds options and passes them on as one value of `cls`."""
+def gathered(name: str, cls: type[tuple[Any, ...]], options: tuple[Decorator, ...]) -> Decorator:
+    """Return a decorator that adds options and passes them on as one value of `cls`.
+
+    `cls` is a named tuple: a dataclass costs half a millisecond of every command's start.
+    """
+    fields: tuple[str, ...] = cls._fields  # type: ignore[attr-defined]
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
         @functools.wraps(command)
         def run(**values: Any) -> Any:
-            own = {field.name: values.pop(field.name) for field in fields(cls)}
+            own = {field: values.pop(field) for field in fields}
             return command(**values, **{name: cls(**own)})
 
         wrapped: Callable[..., Any] = run
@@ -103,8 +106,7 @@ def gathered(name: str, cls: type, options: tuple[Decorator, ...]) -> Decorator:
     return decorate
 
 
-@dataclass(frozen=True)
-class CommonOptions:
+class CommonOptions(NamedTuple):
     """How a command answers, whatever it is asked."""
 
     json: bool
@@ -112,14 +114,15 @@ class CommonOptions:
     no_progress: bool
     output: Path | None
 
-    def __post_init__(self) -> None:
-        if self.output == Path("-"):
-            object.__setattr__(self, "output", None)
-
     @property
     def shows_progress(self) -> bool:
         """Return whether bars may be drawn at all; they also need a terminal."""
         return not (self.quiet or self.no_progress)
+
+
+def _path(_context: click.Context, _param: click.Parameter, name: str | None) -> Path | None:
+    """Return where an answer goes; `-` is standard output, as if nothing had been said."""
+    return None if name in (None, "-") else Path(name)
 
 
 def common_options(output: str = "Write the answer to FILE.", metavar: str = "FILE") -> Decorator:
@@ -132,7 +135,7 @@ def common_options(output: str = "Write the answer to FILE.", metavar: str = "FI
                 _COMMON,
                 "-o",
                 "--output",
-                type=click.Path(path_type=Path),
+                callback=_path,
                 metavar=metavar,
                 help=output,
             ),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, get_args
 
 import click
 
@@ -33,8 +32,7 @@ def usage_errors() -> Iterator[None]:
         raise UsageError(fault.where, fault.fault, fault.remedy) from fault
 
 
-@dataclass(frozen=True)
-class PoseOptions:
+class PoseOptions(NamedTuple):
     """Where A and B are at t = 0."""
 
     translate: Numbers | None
@@ -69,8 +67,7 @@ pose_options = gathered(
 )
 
 
-@dataclass(frozen=True)
-class MotionOptions:
+class MotionOptions(NamedTuple):
     """How A and B move, and for how long."""
 
     vel: Numbers | None
@@ -121,8 +118,7 @@ motion_options = gathered(
 )
 
 
-@dataclass(frozen=True)
-class AccuracyOptions:
+class AccuracyOptions(NamedTuple):
     """Every field of `Accuracy`, None where it was not given, and `--max-depth` for both trees."""
 
     time_tolerance: float | None
@@ -140,7 +136,7 @@ class AccuracyOptions:
 
     def given(self) -> dict[str, Any]:
         """Return the fields of `Accuracy` that were given, by name."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values = self._asdict()
         both = values.pop("max_depth")
         for name in ("max_depth_a", "max_depth_b"):
             if values[name] is None:
@@ -234,8 +230,7 @@ accuracy_options = gathered(
 )
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(NamedTuple):
     """What is asked about two bodies, all of it understood and checked before a file is read."""
 
     poses: tuple[Pose, Pose]

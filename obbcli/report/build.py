@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import ObbError
 from obbcli.report.record import Source, document
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from obbcli.tree import ObbTree
 
 
-@dataclass(frozen=True)
-class Built:
+class Built(NamedTuple):
     """A tree that was saved.
 
     Attributes:
@@ -43,7 +41,7 @@ def build_record(
         files: what became of each.
         options: what shaped the trees.
     """
-    inputs = [asdict(_source(name, file)) for name, file in zip(names, files, strict=True)]
+    inputs = [_source(name, file)._asdict() for name, file in zip(names, files, strict=True)]
     return document(
         "build",
         inputs,

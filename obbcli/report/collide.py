@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from obbcli.report.record import document, stats_part
@@ -57,7 +56,7 @@ def collide_record(
         result["pairs_complete"] = pairs[1]
     return document(
         "collide",
-        dict(zip("ab", map(asdict, sources), strict=True)),
+        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
         motion=motion,
         accuracy=accuracy.as_dict(),
         result=result,

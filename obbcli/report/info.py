@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,7 +41,7 @@ def info_record(
     result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
     result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
     result["check"] = "passed" if is_checked else None
-    return document("info", {"file": asdict(source)}, result=result)
+    return document("info", {"file": source._asdict()}, result=result)
 
 
 def _mesh_part(mesh: Mesh) -> Record:

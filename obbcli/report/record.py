@@ -6,10 +6,9 @@ A record is a dict of plain values in a fixed order; JSON and tables are both ma
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from obbcli import __version__
 
@@ -26,8 +25,7 @@ SCHEMA_VERSION = 1
 _CHUNK = 1 << 20
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(NamedTuple):
     """A file that was asked about.
 
     Attributes:

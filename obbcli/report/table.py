@@ -6,8 +6,7 @@ Both look alike. Lines cost nothing; rich folds and styles, and costs a third of
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -19,8 +18,7 @@ _LONG = 1000
 _GAP = "   "
 
 
-@dataclass(frozen=True)
-class Table:
+class Table(NamedTuple):
     """A table to be drawn.
 
     Attributes:
