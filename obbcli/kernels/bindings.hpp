@@ -1,0 +1,60 @@
+// What the bindings share: arrays across the border, and the trees that keep theirs alive.
+#pragma once
+
+#include "tree.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace nb = nanobind;
+
+template <typename T, nb::ssize_t kColumns>
+using Rows =
+    nb::ndarray<const T, nb::numpy, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
+template <typename T>
+using Column = nb::ndarray<const T, nb::numpy, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+// Reinterprets the rows of a contiguous array as records of the same size.
+template <typename Record, typename T, nb::ssize_t kColumns>
+inline std::span<const Record> records(const Rows<T, kColumns>& rows) {
+    static_assert(sizeof(Record) == sizeof(T) * kColumns);
+    if (rows.shape(0) == 0) {
+        return {}; // the pointer of an empty array means nothing
+    }
+    if (reinterpret_cast<std::uintptr_t>(rows.data()) % alignof(Record) != 0) {
+        throw std::invalid_argument("array is not aligned");
+    }
+    return {reinterpret_cast<const Record*>(rows.data()), rows.shape(0)};
+}
+
+template <typename Number, nb::ssize_t... kShape>
+using Owned = nb::ndarray<nb::numpy, const Number, nb::shape<kShape...>>;
+
+// Hands a vector over to NumPy without copying it.
+template <typename Array, typename Record>
+inline Array owned(std::vector<Record>&& records, std::initializer_list<std::size_t> shape) {
+    auto* kept = new std::vector<Record>(std::move(records));
+    const nb::capsule owner(kept,
+                            [](void* p) noexcept { delete static_cast<std::vector<Record>*>(p); });
+    return Array(kept->data(), shape, owner);
+}
+
+// Arrays of a tree, kept alive, and the view on them that the kernels use.
+struct Tree {
+    Rows<double, 3> vertices;
+    Rows<std::uint32_t, 3> corners;
+    Column<std::uint32_t> triangle_ids;
+    Rows<std::uint8_t, 64> nodes;
+    obb::TreeView view;
+};
+
+void bind_primitives(nb::module_& m);
+void bind_static_query(nb::module_& m);
+void bind_tree(nb::module_& m);
