@@ -93,4 +93,4 @@ def build_tables(record: Record) -> list[Table]:
         if file["error"] is None
     ]
     headings = ("mesh", "tree", "triangles", "boxes", "levels", "file", "B/triangle", "time")
-    return [Table(rows, headings)]
+    return [Table(rows, headings, name_count=2)]

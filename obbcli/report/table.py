@@ -25,11 +25,13 @@ class Table(NamedTuple):
         rows: cells; every row has as many as there are columns.
         columns: headings; None for a list of names and values without any.
         title: a line above; may be empty.
+        name_count: how many columns hold names, flush left; the rest hold numbers, flush right.
     """
 
     rows: Sequence[Sequence[str]]
     columns: Sequence[str] | None = None
     title: str = ""
+    name_count: int = 1
 
 
 def draw(tables: Iterable[Table], file: TextIO) -> None:
@@ -61,9 +63,10 @@ def _lines(table: Table, file: TextIO) -> Iterator[str]:
             yield f"{name:<{widths[0]}}  {value}"
         return
     rule = "─" if (file.encoding or "utf-8").lower().startswith("utf") else "-"
-    for number, (first, *others) in enumerate(rows):
-        cells = (f"{cell:>{width}}" for cell, width in zip(others, widths[1:], strict=True))
-        yield _GAP.join((f"{first:<{widths[0]}}", *cells))
+    sides = ["<" if index < table.name_count else ">" for index in range(len(widths))]
+    for number, row in enumerate(rows):
+        cells = zip(row, sides, widths, strict=True)
+        yield _GAP.join(f"{cell:{side}{width}}" for cell, side, width in cells)
         if number == 0:
             yield rule * (sum(widths) + len(_GAP) * (len(widths) - 1))
 
@@ -88,7 +91,14 @@ def _draw_rich(table: Table, console: Console) -> None:
     else:
         drawn = RichTable(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
         for index, heading in enumerate(table.columns):
-            drawn.add_column(heading, justify="right" if index else "left", overflow="fold")
+            is_name = index < table.name_count
+            # Names fold where space is short; a folded number would be another number.
+            drawn.add_column(
+                heading,
+                justify="left" if is_name else "right",
+                overflow="fold",
+                no_wrap=not is_name,
+            )
     for row in table.rows:
         drawn.add_row(*row)
     console.print(drawn)

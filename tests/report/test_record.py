@@ -159,6 +159,7 @@ def test_table_is_plain_in_a_file_and_styled_on_a_terminal():
         Table([("a", "1"), ("longer", "two words")]),
         Table([("x.stl", "5", ""), ("long name.stl", "1,000", "y")], ("mesh", "n", "flag")),
         Table([("1", "2")], ("triangle of A", "triangle of B"), "a title"),
+        Table([("x.stl", "x.obbt", "5")], ("mesh file", "tree file", "count"), name_count=2),
     ],
 )
 def test_table_looks_alike_in_a_file_and_on_a_terminal(table):
@@ -174,6 +175,14 @@ def test_table_is_folded_on_a_terminal_alone():
 
     assert max(map(len, drawn(table).splitlines())) == 106
     assert "x" * 61 not in drawn_on_a_terminal(table)
+
+
+@pytest.mark.usefixtures("colours")
+def test_folding_on_a_terminal_cuts_no_number():
+    numbers = ["1,996,002", "1,996,001", "289.6 MiB"]
+    table = Table([("x" * 40, "y" * 40, *numbers)], ("a", "b", "c", "d", "e"), name_count=2)
+
+    assert all(number in drawn_on_a_terminal(table) for number in numbers)
 
 
 @pytest.mark.usefixtures("colours")
