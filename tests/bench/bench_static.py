@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import peer_counts
 from harness import OURS, Row, alternate
 from oracles import triangles_intersect
 from oracles_mesh import mesh_pairs
@@ -25,6 +26,7 @@ def run(quick: bool) -> Iterator[Row]:
     check_against_truth()
     triangles = 10_000 if quick else 100_000
     rounds = 7 if quick else 21
+    peer_tests = peer_counts.count(triangles)
     built: dict[tuple[str, int], object] = {}
     for pair in pairs(triangles):
         queries = _queries(pair, built)
@@ -33,6 +35,8 @@ def run(quick: bool) -> Iterator[Row]:
             {who: query.collides for who, query in queries.items()}, rounds, sample_seconds=0.005
         )
         notes[OURS] |= queries[OURS].counts()
+        for who, tests in peer_tests.get(pair.name, {}).items():
+            notes.setdefault(who, {})["box tests"] = tests
         yield Row("static", pair.name, len(pair.a.faces), timings, notes)
     for name in ALL_PAIRS_CLASSES:
         yield _all_pairs_row(POSE_CLASSES[name](triangles), built, rounds)

@@ -141,7 +141,7 @@ class Fcl:
         )
 
     def nbytes(self, model: Any) -> int | None:  # noqa: ARG002
-        """Return None: not told."""
+        """Return None: it does not say."""
         return None
 
     def save(self, model: Any, path: Path) -> int | None:  # noqa: ARG002
