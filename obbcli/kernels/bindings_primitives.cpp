@@ -1,24 +1,14 @@
-// The border to Python for pairs of boxes and triangles: packed arrays in, columns out.
+// The border for pairs of boxes and triangles: packed rows in, columns out.
+#include "bindings.hpp"
 #include "primitives.hpp"
 
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
+#include <cstddef>
 
-#include <cstdint>
-#include <stdexcept>
-#include <vector>
-
-namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
 
-template <nb::ssize_t kColumns>
-using Rows =
-    nb::ndarray<const double, nb::numpy, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
-using Shapes =
-    nb::ndarray<const double, nb::numpy, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
-using Numbers = nb::ndarray<const double, nb::numpy, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Shapes = Rows<double, -1>;
 using Verdicts = nb::ndarray<std::uint8_t, nb::numpy, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 // One row for all pairs, or one for each of `count`.
@@ -33,8 +23,8 @@ obb::Repeated<Record> repeated(const Array& array, std::size_t count) {
     return obb::Repeated<Record>({reinterpret_cast<const Record*>(array.data()), array.shape(0)});
 }
 
-obb::RepeatedMotion motion_of(const Rows<3>& velocity_a, const Rows<3>& velocity_b,
-                              const Numbers& duration, std::size_t count) {
+obb::RepeatedMotion motion_of(const Rows<double, 3>& velocity_a, const Rows<double, 3>& velocity_b,
+                              const Column<double>& duration, std::size_t count) {
     return {repeated<obb::Vec3>(velocity_a, count), repeated<obb::Vec3>(velocity_b, count),
             repeated<double>(duration, count)};
 }
@@ -59,8 +49,8 @@ auto with_shapes(const Shapes& a, const Shapes& b, std::size_t count, const Ask&
                               : with_b(repeated<obb::Triangle>(a, count));
 }
 
-void intersects(const Shapes& a, const Shapes& b, const Rows<3>& velocity_a,
-                const Rows<3>& velocity_b, const Numbers& duration, unsigned threads,
+void intersects(const Shapes& a, const Shapes& b, const Rows<double, 3>& velocity_a,
+                const Rows<double, 3>& velocity_b, const Column<double>& duration, unsigned threads,
                 const Verdicts& verdicts) {
     const std::size_t count = verdicts.shape(0);
     const obb::RepeatedMotion motion = motion_of(velocity_a, velocity_b, duration, count);
@@ -70,70 +60,60 @@ void intersects(const Shapes& a, const Shapes& b, const Rows<3>& velocity_a,
     });
 }
 
-// One column of the result: `Width` numbers for each contact.
-template <std::size_t Width, typename T, typename Source, typename Get>
-nb::object column(const std::vector<Source>& source, const Get& get) {
-    auto* values = new std::vector<T>;
-    nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    values->reserve(Width * source.size());
-    for (const Source& item : source) {
-        get(item, *values);
+// One column of the result: what `get` says of each contact.
+template <typename Get>
+nb::object column(const std::vector<obb::PairContact>& contacts, const Get& get) {
+    using Value = decltype(get(contacts[0]));
+    std::vector<Value> values;
+    values.reserve(contacts.size());
+    for (const obb::PairContact& contact : contacts) {
+        values.push_back(get(contact));
     }
-    if constexpr (Width == 1) {
-        return nb::cast(nb::ndarray<nb::numpy, T>(values->data(), {source.size()}, owner));
+    if constexpr (std::is_same_v<Value, double>) {
+        return nb::cast(owned<Owned<double, -1>>(std::move(values), {contacts.size()}));
     } else {
-        return nb::cast(nb::ndarray<nb::numpy, T>(values->data(), {source.size(), Width}, owner));
+        return nb::cast(owned<Owned<double, -1, 3>>(std::move(values), {contacts.size(), 3}));
     }
 }
 
-nb::object vectors(const std::vector<obb::PairContact>& contacts,
-                   obb::Vec3 (*get)(const obb::PairContact&)) {
-    return column<3, double>(contacts, [get](const auto& contact, auto& out) {
-        const obb::Vec3 v = get(contact);
-        out.insert(out.end(), {v.x, v.y, v.z});
-    });
-}
-
-nb::object scalars(const std::vector<obb::PairContact>& contacts,
-                   double (*get)(const obb::PairContact&)) {
-    return column<1, double>(
-        contacts, [get](const auto& contact, auto& out) { out.push_back(get(contact)); });
-}
-
+// Kind, indices and side of the axis, dimensions of the features, whether contact ends.
 nb::object codes(const std::vector<obb::PairContact>& contacts) {
-    return column<7, std::int8_t>(contacts, [](const obb::PairContact& c, auto& out) {
-        const obb::Touch& t = c.touch;
-        const auto code = [](auto value) { return static_cast<std::int8_t>(value); };
-        out.insert(out.end(),
-                   {code(t.axis.kind), code(t.axis.a), code(t.axis.b), t.side,
-                    code(t.feature_a.dimension), code(t.feature_b.dimension), code(c.ends)});
-    });
+    using Codes = std::array<std::int8_t, 7>;
+    const auto code = [](auto value) { return static_cast<std::int8_t>(value); };
+    std::vector<Codes> values;
+    for (const obb::PairContact& contact : contacts) {
+        const obb::Touch& t = contact.touch;
+        values.push_back({code(t.axis.kind), code(t.axis.a), code(t.axis.b), t.side,
+                          code(t.feature_a.dimension), code(t.feature_b.dimension),
+                          code(contact.ends)});
+    }
+    return nb::cast(owned<Owned<std::int8_t, -1, 7>>(std::move(values), {contacts.size(), 7}));
 }
 
-nb::dict first_contacts(const Shapes& a, const Shapes& b, const Rows<3>& velocity_a,
-                        const Rows<3>& velocity_b, const Numbers& duration, std::size_t count,
-                        unsigned threads) {
+nb::dict first_contacts(const Shapes& a, const Shapes& b, const Rows<double, 3>& velocity_a,
+                        const Rows<double, 3>& velocity_b, const Column<double>& duration,
+                        std::size_t count, unsigned threads) {
     using obb::PairContact;
     const obb::RepeatedMotion motion = motion_of(velocity_a, velocity_b, duration, count);
-    const obb::PairContacts found =
-        with_shapes(a, b, count, [&](const auto& first, const auto& second) {
-            nb::gil_scoped_release release;
-            return obb::first_contacts(first, second, motion, count, threads);
-        });
-    const std::vector<PairContact>& c = found.contacts;
+    obb::PairContacts found = with_shapes(a, b, count, [&](const auto& first, const auto& second) {
+        nb::gil_scoped_release release;
+        return obb::first_contacts(first, second, motion, count, threads);
+    });
+    const std::vector<PairContact>& all = found.contacts;
     nb::dict columns;
-    columns["rows"] = column<1, std::int64_t>(
-        found.rows, [](std::int64_t row, auto& out) { out.push_back(row); });
-    columns["time"] = scalars(c, [](const PairContact& x) { return x.time; });
-    columns["time_below"] = scalars(c, [](const PairContact& x) { return x.time_below; });
-    columns["last_time"] = scalars(c, [](const PairContact& x) { return x.last_time; });
-    columns["codes"] = codes(c);
-    columns["axis"] = vectors(c, [](const PairContact& x) { return x.touch.normal; });
-    columns["point"] = vectors(c, [](const PairContact& x) { return x.point; });
-    columns["normal_a"] = vectors(c, [](const PairContact& x) { return x.normal_a; });
-    columns["normal_b"] = vectors(c, [](const PairContact& x) { return x.normal_b; });
-    columns["smooth_normal_a"] = vectors(c, [](const PairContact& x) { return x.smooth_normal_a; });
-    columns["smooth_normal_b"] = vectors(c, [](const PairContact& x) { return x.smooth_normal_b; });
+    columns["time"] = column(all, [](const PairContact& c) { return c.time; });
+    columns["time_below"] = column(all, [](const PairContact& c) { return c.time_below; });
+    columns["last_time"] = column(all, [](const PairContact& c) { return c.last_time; });
+    columns["normal"] = column(all, [](const PairContact& c) { return c.touch.normal; });
+    columns["point"] = column(all, [](const PairContact& c) { return c.point; });
+    columns["normal_a"] = column(all, [](const PairContact& c) { return c.normal_a; });
+    columns["normal_b"] = column(all, [](const PairContact& c) { return c.normal_b; });
+    columns["smooth_normal_a"] =
+        column(all, [](const PairContact& c) { return c.smooth_normal_a; });
+    columns["smooth_normal_b"] =
+        column(all, [](const PairContact& c) { return c.smooth_normal_b; });
+    columns["codes"] = codes(all);
+    columns["rows"] = owned<Owned<std::int64_t, -1>>(std::move(found.rows), {all.size()});
     return columns;
 }
 

@@ -80,8 +80,9 @@ template <std::size_t K>
     }
     const Leading n = leading(value.numerator);
     const Leading d = leading(value.denominator);
-    // Within a few units of the true quotient, of at least 63 bits.
-    const auto quotient = static_cast<std::uint64_t>((Uint128{n.bits} << 63) / d.bits);
+    // Below the true quotient by a few units of at least 62 bits, so that what is rounded down to 53
+    // bits has them all: the next power of two may lie between.
+    const auto quotient = static_cast<std::uint64_t>((Uint128{n.bits} << 63) / d.bits) - 8;
     const int quotient_exponent = n.exponent - d.exponent - 63;
     // Keep 53 bits, or as many as a subnormal has.
     int drop = static_cast<int>(std::bit_width(quotient)) - 53;
