@@ -52,7 +52,7 @@ class UnknownCellError(Exception):
     """A cell's type is none of those whose faces are known."""
 
 
-def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
+def surface(blocks: Iterable[tuple[str, Any]], points: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the triangles of a mesh of cells, (F, 3).
 
     First the surface cells in order; then, cell by cell and face by face, the faces that exactly
@@ -60,6 +60,7 @@ def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
 
     Args:
         blocks: type and corners (N, nodes) of each block of cells, in the file's order.
+        points: (V, 3), by which the faces of volume cells are turned outwards.
 
     Raises:
         UnknownCellError: a type whose faces are not known.
@@ -74,7 +75,7 @@ def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
             flat.append(_padded(corners[:, : _SURFACES.get(kind, corners.shape[1])]))
         elif kind in _VOLUMES:
             least = 1 + max(corner for face in _VOLUMES[kind] for corner in face)
-            solid.append(_faces_of(_corners(name, cells, least), _VOLUMES[kind]))
+            solid.append(_faces_of(_corners(name, cells, least), _VOLUMES[kind], points))
         elif kind == "polyhedron":
             solid.append(_ragged([face for cell in cells for face in cell]))
         else:
@@ -82,9 +83,7 @@ def surface(blocks: Iterable[tuple[str, Any]]) -> NDArray[np.int64]:
     given, given_counts = _stacked(flat)
     faces, counts = _stacked(solid)
     once = _met_once(given, faces)
-    return fans(
-        *_unpadded(np.vstack([given, faces[once]]), np.hstack([given_counts, counts[once]]))
-    )
+    return fans(*_unpadded(*_stacked([(given, given_counts), (faces[once], counts[once])])))
 
 
 def _corners(name: str, cells: Any, least: int) -> NDArray[np.int64]:
@@ -112,13 +111,33 @@ def _ragged(faces: list[Any]) -> Faces:
     return rows, counts
 
 
-def _faces_of(cells: NDArray[np.int64], local: tuple[tuple[int, ...], ...]) -> Faces:
-    """Return the faces of all cells, those of one cell together."""
+def _faces_of(
+    cells: NDArray[np.int64], local: tuple[tuple[int, ...], ...], points: NDArray[np.float64]
+) -> Faces:
+    """Return the faces of all cells, those of one cell together, turned outwards.
+
+    By the cell's own volume: writers disagree on which way a wedge is numbered.
+    """
     rows = np.full((len(cells), len(local), 4), -1, dtype=np.int64)
     for face, corners in enumerate(local):
         rows[:, face, : len(corners)] = cells[:, corners]
+    inverted = _signed_volumes(rows, points) < 0
+    for face, corners in enumerate(local):
+        rows[inverted, face, : len(corners)] = cells[inverted][:, corners[::-1]]
     counts = np.tile([len(corners) for corners in local], len(cells))
     return rows.reshape(-1, 4), counts.astype(np.int64)
+
+
+def _signed_volumes(rows: NDArray[np.int64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a multiple of each cell's volume by its faces (N, faces, 4): above 0 if outwards."""
+    finite = np.where(np.isfinite(points), points, 0.0)
+    exponent = np.frexp(np.abs(finite).max(initial=0.0))[1]
+    corners = np.ldexp(finite, -exponent)[rows]
+    a, b, c, d = np.moveaxis(corners - corners[:, :1, :1], 2, 0)
+    # A face of three corners is padded with -1, which no product may see.
+    d = np.where((rows[:, :, 3] < 0)[:, :, np.newaxis], c, d)
+    products = a * np.cross(b, c) + a * np.cross(c, d)
+    return np.asarray(products.sum(axis=(1, 2)))
 
 
 def _stacked(blocks: list[Faces]) -> Faces:

@@ -50,7 +50,7 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
         for number, (name, data) in enumerate(blocks):
             _check_indices(source, f"cell block {number} ({name})", data, len(points))
         try:
-            return points, surface(blocks)
+            return points, surface(blocks, points)
         except UnknownCellError as fault:
             raise source.error(
                 f"cells of type {fault} are not read", "convert them to triangles or tetrahedra"
