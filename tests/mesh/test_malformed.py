@@ -1,0 +1,142 @@
+"""Broken files of every kind of breakage end in a MeshError or a sound mesh, never otherwise."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from obbcli.errors import MeshError
+from obbcli.mesh import load_mesh_bytes
+
+POINTS = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]]
+FACES = [[0, 1, 2], [0, 2, 3], [3, 1, 0]]
+
+
+def binary_stl():
+    facets = b"".join(
+        struct.pack("<12fH", 0, 0, 1, *np.ravel([POINTS[i] for i in face]), 0) for face in FACES
+    )
+    return b"solid".ljust(80) + struct.pack("<I", len(FACES)) + facets
+
+
+def ascii_stl():
+    lines = ["solid part"]
+    for face in FACES:
+        lines += ["facet normal 0 0 1", "outer loop"]
+        lines += [f"vertex {x} {y} {z}" for x, y, z in (POINTS[i] for i in face)]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid part\n"]).encode()
+
+
+def obj():
+    lines = [f"v {x} {y} {z}" for x, y, z in POINTS]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in FACES]
+    return "\n".join([*lines, ""]).encode()
+
+
+def off():
+    lines = ["OFF", f"{len(POINTS)} {len(FACES)} 0"]
+    lines += [f"{x} {y} {z}" for x, y, z in POINTS]
+    lines += ["3 " + " ".join(map(str, face)) for face in FACES]
+    return "\n".join([*lines, ""]).encode()
+
+
+def ply(kind):
+    head = (
+        f"ply\nformat {kind} 1.0\nelement vertex {len(POINTS)}\nproperty double x\n"
+        f"property double y\nproperty double z\nelement face {len(FACES)}\n"
+        "property list uchar int vertex_indices\nend_header\n"
+    ).encode()
+    if kind == "ascii":
+        rows = [" ".join(map(str, row)) for row in POINTS]
+        rows += ["3 " + " ".join(map(str, face)) for face in FACES]
+        return head + "\n".join([*rows, ""]).encode()
+    order = "<" if "little" in kind else ">"
+    body = b"".join(struct.pack(order + "3d", *row) for row in POINTS)
+    return head + body + b"".join(struct.pack(order + "B3i", 3, *face) for face in FACES)
+
+
+FILES = {
+    "binary STL": (".stl", binary_stl()),
+    "ASCII STL": (".stl", ascii_stl()),
+    "OBJ": (".obj", obj()),
+    "OFF": (".off", off()),
+    "ASCII PLY": (".ply", ply("ascii")),
+    "little-endian PLY": (".ply", ply("binary_little_endian")),
+    "big-endian PLY": (".ply", ply("binary_big_endian")),
+}
+every_file = pytest.mark.parametrize(("suffix", "data"), FILES.values(), ids=FILES)
+
+
+def load_or_refuse(data, suffix):
+    """Return the mesh, or None where it is refused; any other exception fails the test."""
+    try:
+        mesh = load_mesh_bytes(data, suffix)
+    except MeshError:
+        return None
+    assert np.isfinite(mesh.vertices).all()
+    assert mesh.triangles.min() >= 0
+    assert mesh.triangles.max() < len(mesh.vertices)
+    return mesh
+
+
+@every_file
+def test_the_whole_file_loads(suffix, data):
+    mesh = load_or_refuse(data, suffix)
+
+    assert mesh.vertices[mesh.triangles].tolist() == [[POINTS[i] for i in face] for face in FACES]
+
+
+@every_file
+def test_a_truncated_file_is_refused_or_a_prefix_of_the_mesh(suffix, data):
+    for size in range(len(data)):
+        mesh = load_or_refuse(data[:size], suffix)
+
+        if mesh is not None:
+            assert suffix in (".obj", ".off") or size == len(data) - 1 or data[:5] == b"solid"
+            corners = mesh.vertices[mesh.triangles]
+            whole = [[POINTS[i] for i in face] for face in FACES]
+            assert corners.tolist() == whole[: len(corners)]
+
+
+@every_file
+@given(draw=st.data())
+def test_a_file_with_bytes_changed_never_fails_otherwise(suffix, data, draw):
+    changed = bytearray(data)
+    for _ in range(draw.draw(st.integers(1, 4))):
+        position = draw.draw(st.integers(0, len(changed) - 1))
+        changed[position] = draw.draw(st.integers(0, 255))
+
+    load_or_refuse(bytes(changed), suffix)
+
+
+@every_file
+@given(draw=st.data())
+def test_a_file_with_a_piece_cut_out_or_repeated_never_fails_otherwise(suffix, data, draw):
+    start = draw.draw(st.integers(0, len(data) - 1))
+    end = draw.draw(st.integers(start, len(data)))
+    times = draw.draw(st.sampled_from([0, 2]))
+
+    load_or_refuse(data[:start] + data[start:end] * times + data[end:], suffix)
+
+
+@every_file
+@given(
+    number=st.sampled_from([b"-1", b"4294967296", b"99999999999999999999", b"nan", b"1e999", b""])
+)
+def test_a_text_with_a_number_replaced_never_fails_otherwise(suffix, data, number):
+    words = data.split(b" ")
+    for place in range(0, len(words), max(1, len(words) // 25)):
+        changed = b" ".join([*words[:place], number, *words[place + 1 :]])
+
+        load_or_refuse(changed, suffix)
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".off", ".ply", ".glb", ".gltf"])
+@given(data=st.binary(max_size=300))
+def test_noise_is_refused(suffix, data):
+    assert load_or_refuse(data, suffix) is None
