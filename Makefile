@@ -61,8 +61,9 @@ format-check: .venv/check-tools
 	$(BIN)/ruff format --check
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 
+# For the interpreter at hand: the stubs of a new NumPy are not written for old ones.
 types: .venv/installed .venv/check-tools
-	$(BIN)/mypy
+	$(BIN)/mypy --python-version "$$($(BIN)/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')"
 
 STUB := $(KERNELS)/_core.pyi
 WRITE_STUB := $(BIN)/python -m nanobind.stubgen --quiet -m obbcli.kernels._core -o
