@@ -131,17 +131,19 @@ def test_depth_0_compares_the_root_boxes(fit: Any) -> None:
     assert set(said) == {Status.OVERLAP_AT_START, Status.SEPARATED}
 
 
-def test_error_bound_of_touching_roots_is_no_less_than_their_surfaces_can_be_apart() -> None:
-    # Two triangles at opposite ends of overlapping long boxes.
-    a = Mesh([[0, 0, 0], [0, 1, 0], [0, 0, 1], [10, 0, 0], [10, 1, 0], [10, 0, 1]], [[0, 1, 2]] * 2)
-    b = Mesh(a.vertices, [[3, 4, 5]] * 2)
+def test_error_bound_covers_a_corner_of_a_box_far_from_what_it_holds() -> None:
+    # Specks at two corners of a square; the other surface lies at a third one, 1 away from both.
+    speck = np.array([[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.0, 1e-9, 0.0]])
+    faces = [(0, 1, 2), (3, 4, 5)]
+    specks = np.concatenate((speck, speck + np.array([1.0, 1.0, 0.0])))
+    a = ObbTree.build(Mesh(specks, faces), "axis-aligned")
+    b = Mesh(np.concatenate((speck, speck)) + np.array([1.0, 0.0, 0.0]), faces)
 
+    answer = obbcli.collide(a, b, accuracy=Accuracy(max_depth_a=0))
+
+    assert (answer.status, answer.approximate) == (Status.OVERLAP_AT_START, True)
+    assert 1.0 - 1e-8 <= answer.error_bound <= 1.5
     assert obbcli.collide(a, b).status is Status.SEPARATED
-    both = Mesh(a.vertices, [[0, 1, 2], [3, 4, 5]])
-    inner = Mesh([[5, 0, 0], [5, 0.5, 0], [5, 0, 0.5]], [[0, 1, 2]] * 2)
-    answer = obbcli.collide(both, inner, accuracy=Accuracy(max_depth_a=0))
-    assert answer.approximate
-    assert answer.error_bound >= 5.0
 
 
 def _sheets() -> tuple[ObbTree, ObbTree]:
