@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 #: Below this share of the size squared a rounded area may be no more than noise of a flat surface.
@@ -20,6 +22,8 @@ _FLAT_AREA = 2.0**-40
 _CROSS_ERROR = 8 * 2.0**-53
 #: Products of scaled differences may have lost their last bits to underflow below this.
 _UNDERFLOW = 2.0**-900
+#: Triangles at a time: what fits the cache. A power of two, so that blocks do not change sums.
+_BLOCK = 1 << 14
 #: 2^27 + 1 splits a double into two halves whose products are exact (Dekker 1971).
 _SPLITTER = 2.0**27 + 1
 
@@ -60,40 +64,64 @@ def pairwise_sum(terms: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(terms[0])
 
 
-def scale_exponent(values: NDArray[np.float64]) -> int:
-    """Return e such that the largest magnitude is in [2^(e-1), 2^e); 0 where all are zero."""
-    return math.frexp(max(float(values.max()), -float(values.min())))[1]
-
-
 def surface_centroid(
     vertices: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Return the area-weighted centroid, read-only (3,); the vertices' mean where the area is 0.
 
-    Works on coordinates scaled by a power of two and relative to the box's centre, so that neither
+    Works on coordinates scaled by powers of two and relative to the box's centre, so that neither
     the ends of the double range nor a large offset cost accuracy.
     """
-    used = used_vertices(vertices, triangles)
-    outer = scale_exponent(used) + 1
-    scaled = np.ldexp(used, -outer)
-    middle = scaled.min(axis=0) / 2 + scaled.max(axis=0) / 2
-    centroid = None
-    inner = scale_exponent(scaled - middle)
-    corners = np.ldexp(np.ldexp(vertices, -outer) - middle, -inner)[triangles]
-    edge_1, edge_2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = _length(_cross(edge_1, edge_2))
-    # Rounding gives a line of triangles a small area, and that noise must not place the pivot.
-    if float(area.max()) > _FLAT_AREA or not degenerate(vertices[triangles]).all():
-        total = float(pairwise_sum(area))
-        if total > 0.0:
-            centres = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3
-            centroid = pairwise_sum(centres * area[:, np.newaxis]) / total
+    low, high = bounds(vertices, triangles)
+    outer = _exponent(np.abs([low, high])) + 1
+    scaled_low, scaled_high = np.ldexp(low, -outer), np.ldexp(high, -outer)
+    middle = scaled_low / 2 + scaled_high / 2
+    inner = _exponent(np.maximum(scaled_high - middle, middle - scaled_low))
+
+    def local(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return _times_power(_times_power(points, -outer) - middle, -inner)
+
+    centroid = _weighted_mean(vertices, triangles, local)
     if centroid is None:
-        centroid = pairwise_sum(np.ldexp(scaled - middle, -inner)) / len(used)
+        used = used_vertices(vertices, triangles)
+        centroid = pairwise_sum(local(used)) / len(used)
     placed = np.ldexp(middle + np.ldexp(centroid, inner), outer)
-    result: NDArray[np.float64] = np.clip(placed, used.min(axis=0), used.max(axis=0))
+    result: NDArray[np.float64] = np.clip(placed, low, high)
     result.setflags(write=False)
     return result
+
+
+def _weighted_mean(
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    local: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+) -> NDArray[np.float64] | None:
+    """Return the area-weighted mean in local coordinates, None where the area is exactly 0."""
+    sums = []
+    largest = 0.0
+    for start in range(0, len(triangles), _BLOCK):
+        corners = local(vertices[triangles[start : start + _BLOCK]])
+        area = _length(_cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+        centres = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3
+        moments = centres * area[:, np.newaxis]
+        sums.append(pairwise_sum(np.column_stack([moments, area])))
+        largest = max(largest, float(area.max()))
+    # Rounding gives a line of triangles a small area, and that noise must not place the pivot.
+    if largest <= _FLAT_AREA and degenerate_count(vertices, triangles) == len(triangles):
+        return None
+    total = pairwise_sum(np.array(sums))
+    return total[:3] / total[3] if total[3] > 0.0 else None
+
+
+def _exponent(magnitudes: NDArray[np.float64]) -> int:
+    """Return e such that the largest magnitude is in [2^(e-1), 2^e); 0 where all are zero."""
+    return math.frexp(float(magnitudes.max()))[1]
+
+
+def _times_power(values: NDArray[np.float64], exponent: int) -> NDArray[np.float64]:
+    """Return `values` times 2^exponent: as `np.ldexp`, and several times as fast."""
+    half = exponent // 2
+    return (values * 2.0**half) * 2.0 ** (exponent - half)
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -113,6 +141,12 @@ def _length(a: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.sqrt(a[:, 0] * a[:, 0] + a[:, 1] * a[:, 1] + a[:, 2] * a[:, 2]))
 
 
+def degenerate_count(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> int:
+    """Return how many triangles have an area of exactly zero."""
+    blocks = (triangles[start : start + _BLOCK] for start in range(0, len(triangles), _BLOCK))
+    return sum(int(np.count_nonzero(degenerate(vertices[block]))) for block in blocks)
+
+
 def degenerate(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return which triangles have an area of exactly zero.
 
@@ -124,7 +158,7 @@ def degenerate(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
     """
     largest = np.abs(corners).max(axis=(1, 2))
     exponents = np.frexp(largest)[1]
-    scaled = np.ldexp(corners, -exponents[:, np.newaxis, np.newaxis])
+    scaled = _scaled(corners, exponents)
     edges = scaled[:, 1:] - scaled[:, :1]
     cross = np.abs(_cross(edges[:, 0], edges[:, 1]))
     bound = _cross_of_magnitudes(np.abs(edges[:, 0]), np.abs(edges[:, 1])) * _CROSS_ERROR
@@ -135,6 +169,14 @@ def degenerate(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
         kept = (restored == corners[doubtful]).all(axis=(1, 2))
         flat[doubtful] = _degenerate_exactly(corners[doubtful], scaled[doubtful], kept)
     return flat
+
+
+def _scaled(corners: NDArray[np.float64], exponents: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return each triangle's corners divided by its power of two."""
+    same = int(exponents.max())
+    if same == int(exponents.min()):
+        return _times_power(corners, -same)
+    return np.asarray(np.ldexp(corners, -exponents[:, np.newaxis, np.newaxis]))
 
 
 def _cross_of_magnitudes(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -86,7 +86,7 @@ class Mesh:
     @cached_property
     def degenerate_count(self) -> int:
         """Return how many triangles have an area of exactly zero, decided without rounding."""
-        return int(np.count_nonzero(measure.degenerate(self.vertices[self.triangles])))
+        return measure.degenerate_count(self.vertices, self.triangles)
 
     @cached_property
     def duplicate_count(self) -> int:
@@ -181,7 +181,9 @@ def _array(value: ArrayLike, name: str, prefix: str) -> NDArray[Any]:
 
 def _frozen(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     """Return a read-only C-contiguous array that nobody else writes to, copied if need be."""
-    owned = array.base is None and not array.flags.writeable
+    owner = array if array.base is None else array.base
+    owned = isinstance(owner, np.ndarray) and owner.base is None
+    owned = owned and not owner.flags.writeable and not array.flags.writeable
     frozen: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=None if owned else True)
     frozen.setflags(write=False)
     return frozen

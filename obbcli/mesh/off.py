@@ -100,8 +100,9 @@ def _vertices(source: Source, rows: list[Row]) -> NDArray[np.float64]:
     for line, words in rows:
         if len(words) < 3:
             raise source.error(f"vertex has {len(words)} coordinates, 3 wanted", at=str(line))
-    coordinates = list(chain.from_iterable(words[:3] for _, words in rows))
-    values = all_numbers(coordinates)
+    values = None
+    if b"_" not in source.data:
+        values = all_numbers(list(chain.from_iterable(words[:3] for _, words in rows)))
     if values is None:
         values = np.array(
             [number(source, word, line) for line, words in rows for word in words[:3]]
@@ -113,7 +114,7 @@ def _faces(
     source: Source, rows: list[Row], vertex_count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners of all faces and how many each has; colours after them are left."""
-    table = uniform_rows([words for _, words in rows], 4)
+    table = None if b"_" in source.data else uniform_rows([words for _, words in rows], 4)
     values = None if table is None else all_whole(table)
     if values is not None and len(values):
         square = values.reshape(-1, 4)

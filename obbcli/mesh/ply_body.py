@@ -50,7 +50,9 @@ def read_ascii(source: Source, header: Header) -> dict[str, Columns]:
 
 def _ascii_element(source: Source, element: Element, rows: Rows) -> Columns:
     """Return the columns of one element, its values rounded to the types declared."""
-    columns = _ascii_table(element, [words for _, words in rows])
+    columns = None
+    if source.data.find(b"_", source.data.index(b"end_header") + len(b"end_header")) < 0:
+        columns = _ascii_table(element, [words for _, words in rows])
     if columns is None:
         columns = _ascii_rows(source, element, rows)
     with np.errstate(over="ignore"):  # what is too large becomes infinite, and is refused later

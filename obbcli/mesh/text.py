@@ -50,6 +50,17 @@ def whole(source: Source, word: bytes, line: int, what: str) -> int:
         raise source.error(f"{what} '{shown}' is not a whole number", at=str(line)) from fault
 
 
+def uniform_words(lines: list[bytes], width: int) -> list[bytes] | None:
+    """Return the words of all lines in one list where each has `width` words and no underscore.
+
+    None otherwise. Split twice, so that no list a line is kept for the garbage collector to walk.
+    """
+    if set(map(len, map(bytes.split, lines))) - {width}:
+        return None
+    joined = b" ".join(lines)
+    return None if b"_" in joined else joined.split()
+
+
 def uniform_rows(rows: list[list[bytes]], width: int) -> list[bytes] | None:
     """Return the words of all rows in one list where each has `width` words, or None."""
     if set(map(len, rows)) - {width}:
@@ -58,18 +69,20 @@ def uniform_rows(rows: list[list[bytes]], width: int) -> list[bytes] | None:
 
 
 def all_numbers(words: list[bytes]) -> NDArray[np.float64] | None:
-    """Return all words as finite numbers, or None where one is not: its reader then says which."""
+    """Return all words as finite numbers, or None where one is not: its reader then says which.
+
+    Underscores, which Python takes between digits, are the caller's to look for: once, in the text.
+    """
     try:
         values = np.array(list(map(float, words)), dtype=np.float64)
     except ValueError:
         return None
-    return values if np.isfinite(values).all() and b"_" not in b"".join(words) else None
+    return values if np.isfinite(values).all() else None
 
 
 def all_whole(words: list[bytes]) -> NDArray[np.int64] | None:
-    """Return all words as whole numbers, or None where one is not."""
+    """Return all words as whole numbers, or None where one is not; see `all_numbers`."""
     try:
-        values = np.array(list(map(int, words)), dtype=np.int64)
+        return np.array(list(map(int, words)), dtype=np.int64)
     except (ValueError, OverflowError):
         return None
-    return None if b"_" in b"".join(words) else values

@@ -25,11 +25,11 @@ def position_ids(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
     for axis, multiplier in enumerate(_MULTIPLIERS):
         keys = (keys ^ words[:, axis]) * np.uint64(multiplier)
         keys ^= keys >> np.uint64(29)
-    order = np.argsort(keys, kind="stable")
-    ids = _number_runs(words[order], keys[order])
+    order = np.argsort(keys)
+    ids = _number_runs(words, order, keys)
     if ids is None:
         order = np.lexsort((words[:, 2], words[:, 1], words[:, 0]))
-        ids = _number_runs(words[order], None)
+        ids = _number_runs(words, order, None)
     assert ids is not None
     result = np.empty(len(ids), dtype=np.int64)
     result[order] = ids
@@ -37,12 +37,17 @@ def position_ids(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _number_runs(
-    words: NDArray[np.uint64], keys: NDArray[np.uint64] | None
+    words: NDArray[np.uint64], order: NDArray[np.int64], keys: NDArray[np.uint64] | None
 ) -> NDArray[np.int64] | None:
-    """Return running numbers of equal neighbours, or None where equal keys hide different words."""
-    new = (words[1:] != words[:-1]).any(axis=1)
-    if keys is not None and (new & (keys[1:] == keys[:-1])).any():
-        return None
+    """Return running numbers of equal rows in `order`, None where equal keys hide unequal rows."""
+    new = np.zeros(len(words) - 1, dtype=bool)
+    for axis in range(3):
+        column = words[:, axis][order]
+        new |= column[1:] != column[:-1]
+    if keys is not None:
+        ordered = keys[order]
+        if (new & (ordered[1:] == ordered[:-1])).any():
+            return None
     ids = np.zeros(len(words), dtype=np.int64)
     np.cumsum(new, out=ids[1:])
     return ids

@@ -68,6 +68,32 @@ CELL_TYPES 1
     assert load_mesh_bytes(data, ".vtk").triangles.tolist() == [[0, 1, 2]]
 
 
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"solid".ljust(80) + struct.pack("<I", 1) + bytes(50),
+        b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n",
+        b"SOLID x\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0\n"
+        b"endloop endfacet\nendsolid x\n",
+    ],
+)
+def test_load_mesh_bytes_without_a_suffix_goes_by_the_beginning(data):
+    assert load_mesh_bytes(data).triangles.tolist() == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("data", "fault"),
+    [
+        (OBJ, "<stdin>: does not begin as any known format does; put it into a file"),
+        (b"PK\x03\x04", "<stdin>: is a zip archive, which is not opened"),
+        (b"", "<stdin>: is empty"),
+    ],
+)
+def test_load_mesh_bytes_without_a_suffix_refuses_what_does_not_say(data, fault):
+    with pytest.raises(MeshError, match=fault):
+        load_mesh_bytes(data)
+
+
 def test_load_mesh_refuses_a_missing_file(tmp_path):
     with pytest.raises(MeshError, match=r"none\.stl: no such file") as caught:
         load_mesh(tmp_path / "none.stl")

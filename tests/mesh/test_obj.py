@@ -8,6 +8,7 @@ import trimesh
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
+from obbcli.mesh import obj as obj_module
 
 SQUARE = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
@@ -137,6 +138,30 @@ def test_obj_takes_coordinates_at_the_ends_of_the_double_range():
 
     assert mesh.vertices[0].tolist() == [1e308] * 3
     assert mesh.vertices[1, 0] == 5e-324
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        SQUARE + b"f 1 2 3\nf 4 3 2\n",
+        SQUARE + b"f 1/1 2/2 3/3\nf 4/1 3/2 2/3\n",
+        SQUARE + b"# end\n\no a_b\n  s off\nf 1 2 3 4\nf 4 3 2 1\n",
+        SQUARE.replace(b"0\n", b"0 0.5 0.5 0.5\n") + b"f 4 3 2\n",
+        SQUARE + b"f 1 2 -1\n",
+        SQUARE + b"f 1 2 3\nf 1 2 3 4\n",
+        SQUARE + b" f 1 2 3\nf 3 4 1\n",
+        SQUARE + b"f\t1 2 3\nf 3 4 1\n",
+        SQUARE + b"f 1 2 3 #4\nf 3 4 1 #5\n",
+    ],
+)
+def test_obj_reads_the_same_by_columns_and_by_statements(data, monkeypatch):
+    by_columns = load_mesh_bytes(data, ".obj")
+
+    monkeypatch.setattr(obj_module, "_read_regular", lambda _: None)
+    by_statements = load_mesh_bytes(data, ".obj")
+
+    assert by_columns.vertices.tolist() == by_statements.vertices.tolist()
+    assert by_columns.triangles.tolist() == by_statements.triangles.tolist()
 
 
 def test_obj_agrees_with_trimesh_on_a_file_it_wrote(tmp_path):
