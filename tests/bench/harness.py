@@ -64,13 +64,18 @@ def alternate(
         rounds: in each, every candidate has its turn; who is first changes.
         sample_seconds: calls too short for the clock are repeated for about so long a turn.
     """
-    loops = {who: _loops(call, sample_seconds) for who, call in candidates.items()}
     samples: dict[str, list[float]] = {who: [] for who in candidates}
     order = list(candidates)
-    for _ in range(rounds):
-        for who in order:
-            samples[who].append(_seconds(candidates[who], loops[who]))
-        order = order[1:] + order[:1]
+    gc.collect()
+    gc.disable()
+    try:
+        loops = {who: _loops(call, sample_seconds) for who, call in candidates.items()}
+        for _ in range(rounds):
+            for who in order:
+                samples[who].append(_seconds(candidates[who], loops[who]))
+            order = order[1:] + order[:1]
+    finally:
+        gc.enable()
     return {who: summarise(times) for who, times in samples.items()}
 
 
@@ -89,15 +94,10 @@ def _loops(call: Callable[[], object], sample_seconds: float) -> int:
 
 
 def _seconds(call: Callable[[], object], loops: int) -> float:
-    gc.collect()
-    gc.disable()
-    try:
-        start = time.perf_counter()
-        for _ in range(loops):
-            call()
-        return (time.perf_counter() - start) / loops
-    finally:
-        gc.enable()
+    start = time.perf_counter()
+    for _ in range(loops):
+        call()
+    return (time.perf_counter() - start) / loops
 
 
 def resident_bytes() -> int | None:
