@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import oracles_moving
+from oracles import root
 from oracles_distance import point_box_distance_squared, point_triangle_distance_squared
 from oracles_exact import Box, Hull, box_hull, triangle_hull
 
@@ -40,15 +41,15 @@ def contact_interval(moving: Any) -> tuple[Fraction, Fraction] | None:
     return oracles_moving.contact_interval(hull_of(moving.a), hull_of(moving.b), *moving[2:])
 
 
-def distance_squared(point: NDArray[np.float64], shape: Shape, velocity: Any, time: Fraction) -> float:
-    """Return the squared distance of a point from a shape where it is at `time`.
+def distance(point: NDArray[np.float64], shape: Shape, velocity: Any, time: Fraction) -> float:
+    """Return the distance of a point from a shape where it is at `time`.
 
     Everything is exact up to the result.
     """
     place = [Fraction(x) - Fraction(v) * time for x, v in zip(point.tolist(), velocity, strict=True)]
     if isinstance(shape, Box):
-        return float(point_box_distance_squared(place, shape))
-    return float(point_triangle_distance_squared(place, shape))
+        return float(root(point_box_distance_squared(place, shape)))
+    return float(root(point_triangle_distance_squared(place, shape)))
 
 
 def size_of(shape: Shape) -> float:

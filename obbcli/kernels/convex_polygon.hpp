@@ -17,8 +17,7 @@ class ConvexPolygon {
     [[nodiscard]] const Vec3& operator[](std::size_t k) const { return vertices_[k]; }
     [[nodiscard]] Vec3 middle() const;
 
-    // Keeps the part with dot(normal, x) >= offset; never less than the vertex that is nearest to
-    // being kept, so that rounding cannot make touching polygons disjoint.
+    // The part with dot(normal, x) >= offset, which may be empty.
     [[nodiscard]] ConvexPolygon clipped(const Vec3& normal, double offset) const;
 
   private:
@@ -26,7 +25,8 @@ class ConvexPolygon {
     std::size_t count_ = 0;
 };
 
-// The middle of what two polygons in one plane, up to rounding, have in common.
+// The middle of what two polygons that meet have in common, within rounding of both: where rounding
+// has parted them, it is between their closest points. All coordinates must be below one.
 [[nodiscard]] Vec3 middle_of_common(const ConvexPolygon& a, const ConvexPolygon& b);
 
 } // namespace obb

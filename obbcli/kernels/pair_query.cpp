@@ -1,5 +1,6 @@
 #include "pair_query.hpp"
 
+#include "contact_normals.hpp"
 #include "contact_point.hpp"
 #include "exact_contact.hpp"
 #include "extremes.hpp"
@@ -139,6 +140,7 @@ template <typename A, typename B>
         const RoundedRational first = solver.first();
         contact.time = std::min(first.nearest, m.duration);
         contact.time_below = first.below;
+        contact.time_above = first.above;
         const std::optional<double> last = solver.last();
         contact.last_time = std::max(contact.time, last.value_or(m.duration));
         contact.ends = last.has_value();
