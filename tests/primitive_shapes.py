@@ -46,7 +46,9 @@ def distance(point: NDArray[np.float64], shape: Shape, velocity: Any, time: Frac
 
     Everything is exact up to the result.
     """
-    place = [Fraction(x) - Fraction(v) * time for x, v in zip(point.tolist(), velocity, strict=True)]
+    place = [
+        Fraction(x) - Fraction(v) * time for x, v in zip(point.tolist(), velocity, strict=True)
+    ]
     if isinstance(shape, Box):
         return float(root(point_box_distance_squared(place, shape)))
     return float(root(point_triangle_distance_squared(place, shape)))

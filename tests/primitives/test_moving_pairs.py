@@ -44,7 +44,11 @@ def check_times(moving: Moving) -> None:
         return
     first, last = truth
     assert contact.time == min(float(first), moving.duration)
-    assert Fraction(contact.time_below) <= first < Fraction(math.nextafter(contact.time_below, math.inf))
+    assert (
+        Fraction(contact.time_below)
+        <= first
+        < Fraction(math.nextafter(contact.time_below, math.inf))
+    )
     assert contact.last_time == float(last)
     assert contact.ends == (last < moving.duration)
 
