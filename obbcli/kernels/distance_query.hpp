@@ -1,0 +1,120 @@
+// How far apart are two posed trees? Best-first on proven lower bounds: the pair of nodes that may
+// be nearest is opened first, so that the smallest key that waits bounds the distance from below.
+#pragma once
+
+#include "closest_points.hpp"
+#include "pose.hpp"
+#include "static_query.hpp"
+#include "tree.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace obb {
+
+struct DistanceQueryOptions {
+    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
+    bool boxes_for_leaves = false;
+    // Nodes this deep stand for what they hold; the root's depth is 0.
+    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    // The search may stop when its bounds are this close, in mesh units.
+    double tolerance = 0;
+};
+
+struct DistanceQueryCounts {
+    std::uint64_t box_tests = 0;
+    std::uint64_t triangle_tests = 0;
+    std::uint64_t fine_triangle_tests = 0;
+    std::uint64_t measured = 0;
+    std::uint64_t pops = 0;
+};
+
+// What is proven at any time: the surfaces, with their vertices posed and rounded to double, are at
+// least `low` and at most `high` apart, in mesh units. Both are 0 if and only if two triangles have
+// been proven to intersect. `point_a` and `point_b` are where `high` was measured.
+struct DistanceBounds {
+    double low;
+    double high;
+    Vec3 point_a, point_b;
+    std::int64_t triangle_a, triangle_b;
+};
+
+class DistanceQuery {
+  public:
+    // The trees must outlive the query. Throws std::domain_error where posed coordinates would
+    // leave the range of double.
+    DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
+                  const DistanceQueryOptions& options);
+
+    // Takes at most so many pairs off the queue; true when the bounds are as close as asked, or as
+    // rounding, boxes for triangles and the depth limits allow.
+    bool advance(std::uint64_t max_pops);
+
+    // Throws std::domain_error where the distance exceeds the largest double.
+    [[nodiscard]] DistanceBounds bounds() const;
+    [[nodiscard]] const DistanceQueryCounts& counts() const { return counts_; }
+
+  private:
+    // Lengths within the query are in its unit: mesh units times 2^-exponent_.
+    struct Pair {
+        double key; // proven: nothing in `a` is nearer to anything in `b`
+        NodeRef a, b;
+        bool is_measured; // a pair of triangles that only more digits can tell more about
+    };
+    struct IsLater {
+        bool operator()(const Pair& p, const Pair& q) const { return p.key > q.key; }
+    };
+    // A node as the tests see it: its box, or the triangle that needs none.
+    struct Side {
+        NodeRef ref;
+        Obb box;
+        Triangle triangle; // in the frame of the boxes
+    };
+
+    void begin();
+    void descend(Pair pair);
+    void visit(const Pair& pair);
+    template <bool kOpensA>
+    void open(const Pair& pair);
+    void measure_all(const Pair& pair);
+    void measure_one(const Pair& pair, const Triangle& a, const Triangle& b);
+    void refine(const Pair& pair);
+    void close(const Pair& pair);
+
+    // How a pair goes on: with A's children or B's, with their triangles, or not at all.
+    enum class Next : std::uint8_t { kOpenA, kOpenB, kMeasure, kClose };
+    [[nodiscard]] Next next(const Pair& pair) const;
+    [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
+    [[nodiscard]] Side reach(const PosedTree& body, const NodeRef& ref) const;
+    [[nodiscard]] double bound(const Side& a, const Side& b);
+    template <bool kOpensA>
+    [[nodiscard]] std::array<double, 2> bounds_of_children(const std::array<NodeRef, 2>& children,
+                                                           const Side& other);
+    [[nodiscard]] double in_unit(double length, int exponent) const;
+
+    // Whether a lower bound is as good as the least distance found.
+    [[nodiscard]] bool is_settled(double key) const;
+    void add(const Pair& pair);
+    void take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
+    void touch(const NodeRef& a, const NodeRef& b);
+
+    PosedTree a_, b_;
+    DistanceQueryOptions options_;
+    RoundingBound bound_{};
+    double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
+    int exponent_ = 0;
+    double tolerance_ = 0;
+    std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
+    std::vector<Pair> queue_;               // a heap, the least key in front
+    std::vector<Pair> stack_;               // small pairs, done before the queue goes on
+    double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
+    double high_ = std::numeric_limits<double>::infinity(); // between explicit points
+    DistanceBounds best_{};
+    bool has_begun_ = false;
+    DistanceQueryCounts counts_;
+};
+
+} // namespace obb
