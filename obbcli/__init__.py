@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
+    from obbcli.contact import Query, first_contact
     from obbcli.errors import (
         MeshError,
         MotionError,
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from obbcli.mesh import Mesh, load_mesh
     from obbcli.motion import Body, Motion, Pose
     from obbcli.query import collide, triangle_pairs
-    from obbcli.results import Collision, QueryStats, Status
+    from obbcli.results import Collision, FirstContact, QueryStats, Status
     from obbcli.tree import ObbTree
 
 # A literal, because asking the installed metadata costs three times a bare interpreter's start.
@@ -31,6 +32,7 @@ _HOMES = {
     "Accuracy": "accuracy",
     "Body": "motion",
     "Collision": "results",
+    "FirstContact": "results",
     "Mesh": "mesh",
     "MeshError": "errors",
     "Motion": "motion",
@@ -38,12 +40,14 @@ _HOMES = {
     "ObbError": "errors",
     "ObbTree": "tree",
     "Pose": "motion",
+    "Query": "contact",
     "QueryStats": "results",
     "SceneError": "errors",
     "Status": "results",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
     "collide": "query",
+    "first_contact": "contact",
     "load_mesh": "mesh",
     "triangle_pairs": "query",
 }
@@ -52,6 +56,7 @@ __all__ = [
     "Accuracy",
     "Body",
     "Collision",
+    "FirstContact",
     "Mesh",
     "MeshError",
     "Motion",
@@ -59,6 +64,7 @@ __all__ = [
     "ObbError",
     "ObbTree",
     "Pose",
+    "Query",
     "QueryStats",
     "SceneError",
     "Status",
@@ -66,6 +72,7 @@ __all__ = [
     "UnresolvedError",
     "__version__",
     "collide",
+    "first_contact",
     "load_mesh",
     "triangle_pairs",
 ]

@@ -10,7 +10,7 @@ class ObbError(ValueError):
     """Base of every error that input or a limit can cause.
 
     Args:
-        where: the place, as finely as it is known: `gear.obj:12`, `gear.stl: triangle 7`, an argument's name.
+        where: the place, as finely as it is known: `gear.obj:12`, an argument's name.
         fault: what was found, and what was wanted.
         remedy: what to do about it; may be empty where nothing can be said.
     """

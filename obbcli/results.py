@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from obbcli.errors import UnresolvedError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+Vector: TypeAlias = tuple[float, float, float]
 
 
 class Status(str, Enum):
@@ -86,10 +88,70 @@ class Collision:
         Raises:
             UnresolvedError: a limit was reached before the answer was known.
         """
-        if self.status is Status.UNRESOLVED:
-            raise UnresolvedError(
-                "collides",
-                "the question stopped at a limit before its answer was known",
-                "raise max_iterations or timeout",
-            )
-        return self.status is not Status.SEPARATED
+        return _collides(self.status)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FirstContact:
+    """When and where two moving bodies first touch. Fields that do not apply are None.
+
+    Attributes:
+        status: how the question ended. `Status.SEPARATED` is a proof for the whole closed interval.
+        time: s; no contact before it, proven: the lower end of `time_bounds`. None where separated.
+        time_bounds: s; (lo, hi): no contact before lo, contact at hi as `evidence` says. hi is None
+            where boxes met or nothing is known beyond lo.
+        evidence: `"intersecting"`: triangles proven to meet at hi; `"within_tolerance"`: points of
+            both proven closer than `distance` at hi; `"boxes"`: boxes that stand for triangles met.
+        point: world coordinates at `time`, midway between `point_a` and `point_b`.
+        point_a: the nearest point of A.
+        point_b: the nearest point of B.
+        normal: unit, from A to B: the axis that separated the two last.
+        normal_a: unit normal of A's face (of a box: of the ellipsoid in it, Eberly 2008 §7.2).
+        normal_b: the same of B, towards A.
+        triangle_a: row of A's mesh file.
+        triangle_b: row of B's mesh file.
+        feature: what meets what, A's first: `"vertex-face"`, `"edge-edge"`, ...; `"box"`.
+        distance: mesh units; proven bound on the gap at hi. 0 where triangles intersect.
+        approximate: whether boxes stood for triangles, so that contact is not proven.
+        error_bound: mesh units; how far apart the surfaces can be although contact is said. 0 where
+            exact.
+        stats: what the question cost.
+    """
+
+    status: Status
+    time: float | None = None
+    time_bounds: tuple[float, float | None] | None = None
+    evidence: str | None = None
+    point: Vector | None = None
+    point_a: Vector | None = None
+    point_b: Vector | None = None
+    normal: Vector | None = None
+    normal_a: Vector | None = None
+    normal_b: Vector | None = None
+    triangle_a: int | None = None
+    triangle_b: int | None = None
+    feature: str | None = None
+    distance: float | None = None
+    contained: bool | None = None
+    approximate: bool = False
+    error_bound: float = 0.0
+    stats: QueryStats
+
+    @property
+    def collides(self) -> bool:
+        """Return whether the bodies touch.
+
+        Raises:
+            UnresolvedError: a limit was reached before the answer was known.
+        """
+        return _collides(self.status)
+
+
+def _collides(status: Status) -> bool:
+    if status is Status.UNRESOLVED:
+        raise UnresolvedError(
+            "collides",
+            "the question stopped at a limit before its answer was known",
+            "raise max_iterations or timeout",
+        )
+    return status is not Status.SEPARATED

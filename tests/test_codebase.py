@@ -25,7 +25,7 @@ LAYERS = (
     ("kernels",),
     ("mesh", "motion", "accuracy", "results", "primitives", "treefile"),
     ("tree",),
-    ("query",),
+    ("question", "contact", "nearest", "query"),
     ("scene", "sweep", "study", "view"),
     ("report",),
     ("cli",),

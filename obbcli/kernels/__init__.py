@@ -7,14 +7,20 @@ Everything with a tight loop lives behind this border. Arrays that cross it were
 from __future__ import annotations
 
 from obbcli.kernels._core import (
+    ContactQuery,
+    DistanceQuery,
+    Evidence,
     Fit,
     Pose,
+    Screw,
     Split,
     StaticQuery,
     Tree,
     TreeBuilder,
     TreeError,
     keeps_denormals,
+    primitive_first_contacts,
+    primitive_intersects,
 )
 
 if not keeps_denormals():
@@ -23,4 +29,18 @@ if not keeps_denormals():
         "loaded before), which would void the proofs of obbtree; import obbcli first, or remove it"
     )
 
-__all__ = ["Fit", "Pose", "Split", "StaticQuery", "Tree", "TreeBuilder", "TreeError"]
+__all__ = [
+    "ContactQuery",
+    "DistanceQuery",
+    "Evidence",
+    "Fit",
+    "Pose",
+    "Screw",
+    "Split",
+    "StaticQuery",
+    "Tree",
+    "TreeBuilder",
+    "TreeError",
+    "primitive_first_contacts",
+    "primitive_intersects",
+]

@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 import enum
 from typing import Annotated
 
@@ -59,6 +60,41 @@ class StaticQuery:
 
     def counts(self) -> tuple[int, int, int, int]: ...
 
+class Evidence(enum.Enum):
+    NONE = 0
+
+    INTERSECTING = 1
+
+    WITHIN_TOLERANCE = 2
+
+    BOXES = 3
+
+class Screw:
+    def __init__(self, linear_velocity: Sequence[float], angular_velocity: Sequence[float], pivot: Sequence[float]) -> None: ...
+
+class ContactQuery:
+    def __init__(self, a: Tree, pose_a: Pose, screw_a: Screw, b: Tree, pose_b: Pose, screw_b: Screw, *, duration: float, time_tolerance: float, distance_tolerance: float, clearance: float, boxes_for_leaves: bool, max_depth_a: int, max_depth_b: int, any_contact: bool) -> None: ...
+
+    def advance(self, max_pops: int) -> bool: ...
+
+    @property
+    def lower_bound(self) -> float: ...
+
+    def contact(self) -> tuple[float, float, Evidence, int, int, float, float] | None: ...
+
+    def place(self) -> tuple[list[float], list[float], list[float], list[float], list[float], int, int]: ...
+
+    def counts(self) -> tuple[int, int, int, int]: ...
+
 def primitive_intersects(a: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], b: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity_a: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], velocity_b: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int, verdicts: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
 
 def primitive_first_contacts(a: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], b: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity_a: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], velocity_b: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], count: int, threads: int) -> dict: ...
+
+class DistanceQuery:
+    def __init__(self, a: Tree, pose_a: Pose, b: Tree, pose_b: Pose, boxes_for_leaves: bool, max_depth_a: int, max_depth_b: int, tolerance: float) -> None: ...
+
+    def advance(self, max_pops: int) -> bool: ...
+
+    def bounds(self) -> tuple[float, float, tuple[float, float, float], tuple[float, float, float], int, int]: ...
+
+    def counts(self) -> tuple[int, int, int, int]: ...

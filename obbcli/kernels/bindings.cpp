@@ -20,5 +20,7 @@ NB_MODULE(_core, m) {
     m.def("keeps_denormals", &keeps_denormals);
     bind_tree(m);
     bind_static_query(m);
+    bind_contact_query(m);
     bind_primitives(m);
+    bind_distance(m);
 }

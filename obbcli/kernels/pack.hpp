@@ -21,6 +21,20 @@ using PackMask = std::int64_t __attribute__((vector_size(16))); // all bits or n
 [[nodiscard]] inline bool is_all(bool mask) { return mask; }
 [[nodiscard]] inline bool is_all(PackMask mask) { return (mask[0] & mask[1]) != 0; }
 
+[[nodiscard]] inline bool is_none(bool mask) { return !mask; }
+[[nodiscard]] inline bool is_none(PackMask mask) { return (mask[0] | mask[1]) == 0; }
+
+[[nodiscard]] inline double square_root(double a) { return std::sqrt(a); }
+[[nodiscard]] inline Pack square_root(Pack a) { return Pack{std::sqrt(a[0]), std::sqrt(a[1])}; }
+[[nodiscard]] inline double select(bool mask, double a, double b) { return mask ? a : b; }
+[[nodiscard]] inline Pack select(PackMask mask, Pack a, Pack b) { return mask ? a : b; }
+template <typename Real>
+[[nodiscard]] inline Real maximum(Real a, Real b) {
+    return select(a > b, a, b);
+}
+[[nodiscard]] inline double every(double a, double) { return a; }
+[[nodiscard]] inline Pack every(double a, Pack) { return Pack{a, a}; }
+
 [[nodiscard]] inline Vector3<Pack> packed(Vec3 a, Vec3 b) {
     return {Pack{a.x, b.x}, Pack{a.y, b.y}, Pack{a.z, b.z}};
 }

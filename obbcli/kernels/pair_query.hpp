@@ -17,7 +17,8 @@ struct PairVerdict {
 
 struct PairContact {
     double time;       // first time of contact, nearest double
-    double time_below; // a double not later than the first time
+    double time_below; // the last double that is not later than the first time
+    double time_above; // the first double that is not earlier
     double last_time;  // last time of contact in [0, duration]
     bool ends;         // whether contact ends before the duration
     Touch touch;

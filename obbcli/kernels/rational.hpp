@@ -70,13 +70,14 @@ template <std::size_t K>
 struct RoundedRational {
     double nearest; // ties to even
     double below;   // the largest double that is not greater
+    double above;   // the smallest double that is not less
 };
 
 // The doubles around the fraction times 2^exponent; the fraction is >= 0 and the product in range.
 template <std::size_t K>
 [[nodiscard]] RoundedRational rounded(const Rational<K>& value, int exponent) {
     if (value.numerator.is_zero()) {
-        return {0.0, 0.0};
+        return {0.0, 0.0, 0.0};
     }
     const Leading n = leading(value.numerator);
     const Leading d = leading(value.denominator);
@@ -97,8 +98,11 @@ template <std::size_t K>
     }
     const auto half = compare(value, 2 * mantissa + 1, unit - 1);
     const bool up = half > 0 || (half == 0 && mantissa % 2 != 0);
-    return {std::ldexp(static_cast<double>(mantissa + (up ? 1 : 0)), unit + exponent),
-            std::ldexp(static_cast<double>(mantissa), unit + exponent)};
+    const auto result = [&](std::int64_t m) {
+        return std::ldexp(static_cast<double>(m), unit + exponent);
+    };
+    const bool is_double = compare(value, mantissa, unit) == 0;
+    return {result(mantissa + (up ? 1 : 0)), result(mantissa), result(mantissa + (is_double ? 0 : 1))};
 }
 
 // The vector divided by some power of two, each component cut to 62 bits of the largest's scale.

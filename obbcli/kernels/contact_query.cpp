@@ -1,0 +1,371 @@
+#include "contact_query.hpp"
+
+#include "closest_points.hpp"
+#include "pair_query.hpp"
+#include "scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace obb {
+
+namespace {
+
+// Earliest first; of equal times the deepest, so that triangles are reached early.
+struct LaterFirst {
+    template <typename Entry>
+    bool operator()(const Entry& x, const Entry& y) const {
+        return x.time > y.time ||
+               (x.time == y.time && x.a.depth + x.b.depth < y.a.depth + y.b.depth);
+    }
+};
+
+// Rounding of a projection times the 1-norms of what is projected: the spin's matrix, its product
+// with pose and position (below 20 u), the axis and the dot product (below 10 u).
+constexpr double kRelative = Spin::kMatrixError + 80 * kUnitRoundoff;
+
+// A stalled pair waits for so many others to prove contact within the tolerance.
+constexpr std::uint64_t kStallPops = 2000;
+
+} // namespace
+
+ContactQuery::ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& screw_a,
+                           const TreeView& b, const Pose& pose_b, const Screw& screw_b,
+                           const ContactQueryOptions& options)
+    : a_(a, pose_a, screw_a), b_(b, pose_b, screw_b), options_(options) {
+    set_units();
+    is_translation_ = a_.spin().is_still() && b_.spin().is_still();
+    push({0, a.root(), b.root()});
+}
+
+// One power of two brings the largest length of the scene into [1/2, 1), another the duration.
+void ContactQuery::set_units() {
+    const Vec3 between = b_.screw().pivot - a_.screw().pivot;
+    const Vec3 velocity = b_.screw().linear_velocity - a_.screw().linear_velocity;
+    const double largest = std::max({a_.reach(), b_.reach(), norm_1(between)});
+    if (!std::isfinite(largest) || !std::isfinite(norm_1(velocity))) {
+        throw std::domain_error("positions or velocities exceed the range of double");
+    }
+    time_exponent_ = exponent_of(options_.duration);
+    length_exponent_ = exponent_of(largest);
+    if (norm_1(velocity) > 0) {
+        length_exponent_ =
+            std::max(length_exponent_, exponent_of(norm_1(velocity)) + time_exponent_);
+    }
+    if (length_exponent_ > 1020) {
+        throw std::domain_error("positions would exceed the range of double (about 1e307)");
+    }
+    a_.set_units(length_exponent_, time_exponent_);
+    b_.set_units(length_exponent_, time_exponent_);
+    pivot_between_ = scaled(between, -length_exponent_);
+    closing_velocity_ = scaled(velocity, time_exponent_ - length_exponent_);
+    duration_ = std::ldexp(options_.duration, -time_exponent_);
+    time_tolerance_ = std::ldexp(options_.time_tolerance, -time_exponent_);
+    clearance_ = std::ldexp(options_.clearance, -length_exponent_);
+    distance_tolerance_ = std::ldexp(options_.distance_tolerance, -length_exponent_);
+    relative_ = kRelative;
+    between_error_ =
+        8 * kUnitRoundoff * (norm_1(pivot_between_) + duration_ * norm_1(closing_velocity_)) +
+        0x1p-380;
+}
+
+void ContactQuery::set_time(double time) {
+    a_.set_time(time);
+    b_.set_time(time);
+}
+
+MovingFrame ContactQuery::frame(double absolute, double time) const {
+    return {pivot_between_ + time * closing_velocity_,
+            closing_velocity_,
+            &a_.spin(),
+            &b_.spin(),
+            duration_ - time,
+            relative_,
+            between_error_ + clearance_ + absolute};
+}
+
+bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
+                           std::uint32_t max_depth) const {
+    return !ref.is_triangle() && ref.depth < max_depth &&
+           !(options_.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
+}
+
+double ContactQuery::size_of(const MovingTree& body, const NodeRef& ref) {
+    return std::ldexp(norm_inf(half_extents_of(body.tree().node(ref))), body.tree().scale_exponent);
+}
+
+// The time up to which a step proves a pair apart, rounded down; nothing where that is beyond the
+// duration. A step proves a half-open interval, so reaching the duration exactly is not enough.
+std::optional<double> ContactQuery::later(double time, double step) const {
+    const double sum = time + step;
+    const double below = sum * (1 - 0x1p-52);
+    if (below > duration_) {
+        return std::nullopt;
+    }
+    return std::max(time, below);
+}
+
+void ContactQuery::push(const Entry& entry) {
+    queue_.push_back(entry);
+    std::push_heap(queue_.begin(), queue_.end(), LaterFirst{});
+}
+
+bool ContactQuery::advance(std::uint64_t max_pops) {
+    for (; !is_finished_ && max_pops > 0; --max_pops) {
+        if (has_ended()) {
+            break;
+        }
+        std::pop_heap(queue_.begin(), queue_.end(), LaterFirst{});
+        const Entry entry = queue_.back();
+        queue_.pop_back();
+        ++counts_.pops;
+        visit(entry);
+    }
+    return is_finished_ || has_ended();
+}
+
+// Whether what is known already answers the question.
+bool ContactQuery::has_ended() {
+    if (is_finished_) {
+        return true;
+    }
+    const double next =
+        queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.front().time;
+    lower_bound_ = std::min({next, stall_ ? stall_->time : next, duration_});
+    if (exact_ && (next >= exact_->high || options_.any_contact)) {
+        finish(exact_);
+    } else if (proof_ && (options_.any_contact || lower_bound_ >= proof_->time - time_tolerance_)) {
+        finish(Contact{std::min(lower_bound_, proof_->time), proof_->time, Evidence::kIntersecting,
+                       proof_->a, proof_->b, 0, 0});
+    } else if (stall_ && (next > stall_->time + time_tolerance_ ||
+                          counts_.pops > stall_->pops + kStallPops)) {
+        finish_stalled();
+    } else if (queue_.empty()) {
+        finish(std::nullopt);
+    }
+    return is_finished_;
+}
+
+void ContactQuery::finish(std::optional<Contact> contact) {
+    contact_ = contact;
+    lower_bound_ = contact ? contact->low : duration_;
+    if (contact_) {
+        contact_->low = std::ldexp(contact_->low, time_exponent_);
+        contact_->high = std::ldexp(contact_->high, time_exponent_);
+    }
+    is_finished_ = true;
+    queue_.clear();
+}
+
+void ContactQuery::finish_stalled() {
+    const Entry entry{stall_->time, stall_->a, stall_->b};
+    Vec3 direction;
+    const double distance = distance_at(entry, entry.time, direction);
+    finish(
+        Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, distance, 0});
+}
+
+void ContactQuery::visit(const Entry& entry) {
+    const bool open_a = is_open(a_.tree(), entry.a, options_.max_depth_a);
+    const bool open_b = is_open(b_.tree(), entry.b, options_.max_depth_b);
+    if (!open_a && !open_b) {
+        if (!entry.a.is_triangle() || !entry.b.is_triangle()) {
+            meet_boxes(entry);
+        } else if (is_translation_ && clearance_ == 0) {
+            meet_in_translation(entry);
+        } else {
+            meet_triangles(entry);
+        }
+    } else if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
+        open<true>(entry);
+    } else {
+        open<false>(entry);
+    }
+}
+
+template <bool kOpensA>
+void ContactQuery::advance_child(const Entry& entry, const NodeRef& child, double step) {
+    if (const std::optional<double> time = later(entry.time, step)) {
+        push(kOpensA ? Entry{*time, child, entry.b} : Entry{*time, entry.a, child});
+    }
+}
+
+// Replaces a pair by its children's, each pushed on as far as its own boxes prove it apart.
+template <bool kOpensA>
+void ContactQuery::open(const Entry& entry) {
+    set_time(entry.time);
+    MovingTree& body = kOpensA ? a_ : b_;
+    const NodeRef& ref = kOpensA ? entry.a : entry.b;
+    const Obb other = kOpensA ? b_.box(entry.b) : a_.box(entry.a);
+    const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
+    const auto step_of = [&](const NodeRef& child) {
+        ++counts_.box_tests;
+        const Obb box = body.box(child);
+        return kOpensA ? time_apart(box, other, now) : time_apart(other, box, now);
+    };
+    const Node& node = body.tree().node(ref);
+    if (TreeView::is_leaf(node)) {
+        for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
+            const NodeRef child = TreeView::triangle_ref(ref, i);
+            advance_child<kOpensA>(entry, child, step_of(child));
+        }
+        return;
+    }
+    const auto children = TreeView::children(ref, node);
+    if (children[0].is_triangle() || children[1].is_triangle()) {
+        for (const NodeRef& child : children) {
+            advance_child<kOpensA>(entry, child, step_of(child));
+        }
+        return;
+    }
+    const BasicObb<Pack> boxes =
+        body.boxes(body.tree().node(children[0]), body.tree().node(children[1]));
+    counts_.box_tests += 2;
+    const Pack steps = kOpensA ? time_apart(boxes, broadcast(other), now)
+                               : time_apart(broadcast(other), boxes, now);
+    for (std::size_t k = 0; k < 2; ++k) {
+        advance_child<kOpensA>(entry, children[k], steps[k]);
+    }
+}
+
+// A node that stands for what it holds: pushed on as long as the boxes are apart.
+void ContactQuery::meet_boxes(const Entry& entry) {
+    set_time(entry.time);
+    ++counts_.box_tests;
+    const Obb a = a_.box(entry.a), b = b_.box(entry.b);
+    const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
+    const std::optional<double> time = later(entry.time, time_apart(a, b, now));
+    if (!time) {
+        return;
+    }
+    if (*time > entry.time) {
+        push({*time, entry.a, entry.b});
+        return;
+    }
+    // Boxes that no face axis separates may be apart still, by no more than their diagonals.
+    const double sizes = norm(a.half_extents) + norm(b.half_extents);
+    const double bound = std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * now.absolute, length_exponent_);
+    Contact contact{entry.time, entry.time, Evidence::kBoxes, entry.a, entry.b, 0, bound};
+    finish(contact);
+}
+
+// Without turning, a pair's first contact is exact. Eberly 2008 §4.2.2.
+void ContactQuery::meet_in_translation(const Entry& entry) {
+    const LinearMotion motion{a_.screw().linear_velocity, b_.screw().linear_velocity,
+                              options_.duration};
+    ++counts_.triangle_tests;
+    const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
+    const PairVerdict verdict = test_pair(a, b, motion);
+    if (!verdict.intersects) {
+        counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
+        return;
+    }
+    ++counts_.exact_triangle_tests;
+    const std::optional<PairContact> found = obb::first_contact(a, b, motion);
+    const double high = std::ldexp(std::min(found->time_above, options_.duration), -time_exponent_);
+    if (exact_ && exact_->high <= high) {
+        return;
+    }
+    exact_ = Contact{std::ldexp(found->time_below, -time_exponent_),
+                     high,
+                     Evidence::kIntersecting,
+                     entry.a,
+                     entry.b,
+                     0,
+                     0};
+    // What cannot touch before is of no interest any more.
+    std::erase_if(queue_, [&](const Entry& e) { return e.time > high; });
+    std::make_heap(queue_.begin(), queue_.end(), LaterFirst{});
+}
+
+double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {
+    return relative_ * (a.size + b.size) + between_error_;
+}
+
+void ContactQuery::meet_triangles(const Entry& entry) {
+    set_time(entry.time);
+    ++counts_.triangle_tests;
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const MovingFrame now = frame(0, entry.time);
+    Vec3 direction{0, 0, 0};
+    TriangleStep step;
+    if (clearance_ == 0) {
+        step = time_apart(a, b, now, direction);
+    }
+    // The features' axes alone cannot prove two vertices further apart than they themselves show.
+    if (step.time == 0) {
+        (void)distance_at(entry, entry.time, direction);
+        step = time_apart(a, b, now, direction);
+    }
+    const std::optional<double> time = later(entry.time, step.time);
+    if (!time) {
+        return;
+    }
+    const bool is_near = !(*time - entry.time > time_tolerance_);
+    if (is_near && prove_contact(entry)) {
+        return;
+    }
+    if (*time > entry.time) {
+        push({*time, entry.a, entry.b});
+    } else if (!stall_ || entry.time < stall_->time) {
+        stall_ = Stall{entry.time, entry.a, entry.b, counts_.pops};
+    }
+}
+
+// Looks for a proven contact a little later: at shrinking fractions of the tolerance, since a graze
+// is over soon. True where the pair needs no more attention.
+bool ContactQuery::prove_contact(const Entry& entry) {
+    if (distance_tolerance_ >= 0 || clearance_ > 0) {
+        Vec3 direction;
+        const double distance = distance_at(entry, entry.time, direction);
+        const double enough =
+            std::max(std::ldexp(std::max(distance_tolerance_, clearance_), length_exponent_), 0.0);
+        if (distance <= enough) {
+            finish(Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b,
+                           distance, 0});
+            return true;
+        }
+    }
+    for (const double share : {0.5, 0x1p-3, 0x1p-6, 0x1p-12}) {
+        const double time = std::min(entry.time + share * time_tolerance_, duration_);
+        if (proof_ && proof_->time <= time) {
+            continue;
+        }
+        set_time(time);
+        const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+        SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+        const double error = triangle_error(a, b);
+        const Vec3 between = pivot_between_ + time * closing_velocity_;
+        for (Vec3& p : b.points) {
+            p = p + between;
+        }
+        if (surely_intersect(a.points, b.points, error)) {
+            proof_ = Entry{time, entry.a, entry.b};
+        }
+    }
+    set_time(entry.time);
+    return false;
+}
+
+// A proven upper bound on the distance of two triangles at a time, mesh units, and the direction
+// between their closest points.
+double ContactQuery::distance_at(const Entry& entry, double time, Vec3& direction) {
+    set_time(time);
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const Vec3 between = pivot_between_ + time * closing_velocity_;
+    Triangle moved = b.points;
+    for (Vec3& p : moved) {
+        p = p + between;
+    }
+    const TriangleDistance closest = measure(a.points, moved);
+    direction = closest.low > 0 ? closest.point_b - closest.point_a : Vec3{0, 0, 0};
+    const double high = closest.low > 0 ? std::ldexp(closest.high, closest.exponent) : 0.0;
+    return std::ldexp(high + 2 * triangle_error(a, b), length_exponent_);
+}
+
+double ContactQuery::lower_bound() const { return std::ldexp(lower_bound_, time_exponent_); }
+
+} // namespace obb
