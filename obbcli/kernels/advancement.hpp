@@ -49,10 +49,6 @@ struct SpinningBox {
 
     SpinningBox(const BasicObb<Real>& b, const Spin& s) : box(&b), spin(&s) {
         const Vec3 w = s.velocity(), k = s.axis();
-        const auto crossed = [](Vec3 u, Vector3<Real> v) {
-            return Vector3<Real>{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z,
-                                 u.x * v.y - u.y * v.x};
-        };
         center_velocity = crossed(w, b.center);
         for (std::size_t i = 0; i < 3; ++i) {
             axis_velocity[i] = crossed(w, b.axes[i]);
@@ -67,28 +63,31 @@ struct SpinningBox {
     [[nodiscard]] Real velocity_spread(const Vector3<Real>& n) const {
         return reach(n, axis_velocity);
     }
-    // |W| |n x W|, rounded up: the acceleration along n of points at distance 1 from the axis.
-    [[nodiscard]] Real acceleration_along(const Vector3<Real>& n) const {
-        const double square = spin->speed() * spin->speed();
-        const Real along = dot_with(n, spin->velocity());
-        const Real across = maximum((1.0 + 0x1p-26) * square - along * along, every(0.0, along));
-        return spin->speed() * square_root(across) * (1.0 + 0x1p-26);
+    // |n x k|, rounded up: how far points at distance 1 from the axis get along n.
+    [[nodiscard]] Real lever_along(const Vector3<Real>& n) const {
+        const Vector3<Real> c = crossed(spin->axis(), n);
+        return square_root(dot(c, c)) * (1.0 + 0x1p-26) + 0x1p-50;
     }
-    // Half the width of what the whole turning box covers along n, about circle_center().
-    [[nodiscard]] Real circle_reach(const Vector3<Real>& n) const {
-        const Real along = dot_with(n, spin->axis());
-        const Real across = maximum(every(1.0 + 0x1p-26, along) - along * along, every(0.0, along));
+    // What the whole turning box covers along n: a middle, and half the width about it.
+    [[nodiscard]] Real circle_center(const Vector3<Real>& n) const {
+        return spin->is_still() ? dot(n, box->center)
+                                : dot_with(n, spin->axis()) * dot_with(box->center, spin->axis());
+    }
+    [[nodiscard]] Real circle_reach(const Vector3<Real>& n, Real lever) const {
+        if (spin->is_still()) {
+            return reach_along(n);
+        }
         const Vector3<Real> h = box->half_extents;
         const Real spread = h.x * absolute(dot_with(box->axes[0], spin->axis())) +
                             h.y * absolute(dot_with(box->axes[1], spin->axis())) +
                             h.z * absolute(dot_with(box->axes[2], spin->axis()));
-        return absolute(along) * spread + radius * square_root(across);
-    }
-    [[nodiscard]] Real circle_center(const Vector3<Real>& n) const {
-        return dot_with(n, spin->axis()) * dot_with(box->center, spin->axis());
+        return absolute(dot_with(n, spin->axis())) * spread + radius * lever;
     }
 
   private:
+    [[nodiscard]] static Vector3<Real> crossed(Vec3 u, Vector3<Real> v) {
+        return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    }
     [[nodiscard]] static Real dot_with(const Vector3<Real>& n, Vec3 v) {
         return n.x * v.x + n.y * v.y + n.z * v.z;
     }
@@ -122,6 +121,9 @@ template <typename Real>
     // Circles say more than parabolas only where much turning is left.
     const bool is_long = speeds * frame.remaining > 0.5;
 
+    const double square_a = frame.spin_a->speed() * frame.spin_a->speed() * (1 + 0x1p-40);
+    const double square_b = frame.spin_b->speed() * frame.spin_b->speed() * (1 + 0x1p-40);
+
     Real longest = every(0.0, d.x);
     const auto try_axis = [&](Vector3<Real> n) {
         const Real offset = dot(n, d);
@@ -134,15 +136,16 @@ template <typename Real>
         }
         const Real w = dot(n, velocity) - moving_a.velocity_spread(n) -
                        moving_b.velocity_spread(n) - e_velocity;
-        const Real acceleration = moving_a.acceleration_along(n) * moving_a.radius +
-                                  moving_b.acceleration_along(n) * moving_b.radius;
+        const Real lever_a = moving_a.lever_along(n), lever_b = moving_b.lever_along(n);
+        const Real acceleration =
+            square_a * moving_a.radius * lever_a + square_b * moving_b.radius * lever_b;
         Real h = closing_time(gap, w, acceleration);
         if (is_long) {
             const Real between =
                 n.x * frame.between.x + n.y * frame.between.y + n.z * frame.between.z;
             const Real circle_gap = between + moving_b.circle_center(n) -
-                                    moving_a.circle_center(n) - moving_a.circle_reach(n) -
-                                    moving_b.circle_reach(n) - e;
+                                    moving_a.circle_center(n) - moving_a.circle_reach(n, lever_a) -
+                                    moving_b.circle_reach(n, lever_b) - e;
             const Real drift = n.x * frame.closing_velocity.x + n.y * frame.closing_velocity.y +
                                n.z * frame.closing_velocity.z - e_drift;
             const Real still = closing_time(circle_gap, drift, every(0.0, drift));

@@ -16,9 +16,9 @@ void bind_distance(nb::module_& m) {
             [](obb::DistanceQuery* self, const Tree& a, const obb::Pose& pose_a, const Tree& b,
                const obb::Pose& pose_b, bool boxes_for_leaves, std::uint32_t max_depth_a,
                std::uint32_t max_depth_b, double tolerance) {
-                new (self) obb::DistanceQuery(
-                    a.view, pose_a, b.view, pose_b,
-                    {boxes_for_leaves, max_depth_a, max_depth_b, tolerance});
+                new (self)
+                    obb::DistanceQuery(a.view, pose_a, b.view, pose_b,
+                                       {boxes_for_leaves, max_depth_a, max_depth_b, tolerance});
             },
             "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a, "max_depth_a"_a,
             "max_depth_b"_a, "tolerance"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
@@ -29,11 +29,11 @@ void bind_distance(nb::module_& m) {
              [](const obb::DistanceQuery& q) {
                  const obb::DistanceBounds b = q.bounds();
                  const auto point = [](const obb::Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
-                 return std::tuple{b.low,           b.high,       point(b.point_a),
-                                   point(b.point_b), b.triangle_a, b.triangle_b};
+                 return std::tuple{b.low,        b.high,      point(b.point_a), point(b.point_b),
+                                   b.triangle_a, b.triangle_b};
              })
         .def("counts", [](const obb::DistanceQuery& q) {
             const obb::DistanceQueryCounts& c = q.counts();
-            return std::tuple{c.box_tests, c.triangle_tests, c.fine_triangle_tests, c.pops};
+            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
         });
 }

@@ -1,6 +1,7 @@
 #include "closest_points.hpp"
 
 #include "extremes.hpp"
+#include "local_pair.hpp"
 #include "scale.hpp"
 #include "twofold.hpp"
 
@@ -8,115 +9,26 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace obb {
 namespace {
 
-// Products of four lengths occur below: they stay in range for lengths between these, and others
-// are scaled by a power of two first.
-constexpr double kShortest = 0x1p-100;
-constexpr double kLongest = 0x1p100;
 // Squares below this may have lost digits to underflow: such a direction proves nothing.
 constexpr double kLeastSquare = 0x1p-800;
-
-template <typename Real>
-using Corner = Vector3<Real>;
-template <typename Real>
-using Corners3 = std::array<Vector3<Real>, 3>;
 
 template <typename Real>
 [[nodiscard]] Vector3<Real> product(const Vector3<Real>& a, const Vector3<Real>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Two triangles relative to A's first corner and scaled by 2^-exponent. Every corner is off by at
-// most the type's roundoff times its distance from there, and so is every point of the triangles:
-// the distance changes by no more than roundoff * extent.
-template <typename Real>
-struct LocalPair {
-    Corners3<Real> a, b;
-    double extent; // sum of the largest distances of A's and B's corners from the origin, or more
-    int exponent;
-};
-
-[[nodiscard]] Vec3 difference(const Vec3& p, const Vec3& q, double) { return p - q; }
-[[nodiscard]] Vector3<Twofold> difference(const Vec3& p, const Vec3& q, Twofold) {
-    return {Twofold(two_sum(p.x, -q.x)), Twofold(two_sum(p.y, -q.y)), Twofold(two_sum(p.z, -q.z))};
-}
-
-[[nodiscard]] Vec3 rescaled(const Vec3& v, int exponent) { return scaled(v, exponent); }
-[[nodiscard]] Vector3<Twofold> rescaled(const Vector3<Twofold>& v, int exponent) {
-    const Vec3 high = scaled({v.x.high, v.y.high, v.z.high}, exponent);
-    const Vec3 low = scaled({v.x.low, v.y.low, v.z.low}, exponent);
-    return {{high.x, low.x}, {high.y, low.y}, {high.z, low.z}};
-}
-
-[[nodiscard]] Vec3 nearest_double(const Vec3& v) { return v; }
-[[nodiscard]] Vec3 nearest_double(const Vector3<Twofold>& v) {
-    return {v.x.high, v.y.high, v.z.high};
-}
-
-template <typename Real>
-[[nodiscard]] double reach_of(const Corners3<Real>& corners) {
-    return reach(Triangle{nearest_double(corners[0]), nearest_double(corners[1]),
-                          nearest_double(corners[2])});
-}
-
-template <typename Real>
-[[nodiscard]] LocalPair<Real> localized(Triangle a, Triangle b) {
-    LocalPair<Real> pair;
-    pair.exponent = 0;
-    // Differences of the largest doubles overflow. What underflows here is 2^-1000 of the corners.
-    if (larger(reach(a), reach(b)) > 0x1p1000) {
-        pair.exponent = 64;
-        for (std::size_t k = 0; k < 3; ++k) {
-            a[k] = 0x1p-64 * a[k];
-            b[k] = 0x1p-64 * b[k];
-        }
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        pair.a[k] = difference(a[k], a[0], Real{});
-        pair.b[k] = difference(b[k], a[0], Real{});
-    }
-    double far_a = reach_of(pair.a), far_b = reach_of(pair.b);
-    const double farthest = larger(far_a, far_b);
-    if (farthest > 0 && !(farthest >= kShortest && farthest <= kLongest)) {
-        const int k = exponent_of(farthest);
-        for (std::size_t i = 0; i < 3; ++i) {
-            pair.a[i] = rescaled(pair.a[i], -k);
-            pair.b[i] = rescaled(pair.b[i], -k);
-        }
-        pair.exponent += k;
-        far_a = reach_of(pair.a);
-        far_b = reach_of(pair.b);
-    }
-    pair.extent = 1.7320508075688774 * (far_a + far_b) * (1 + 8 * kUnitRoundoff);
-    return pair;
-}
-
-// The edges and the normal of a triangle.
-template <typename Real>
-struct Sides {
-    Corners3<Real> edges; // edge k runs from corner k to the next
-    std::array<Real, 3> squares;
-    Vector3<Real> normal;
-    Real normal_square;
-
-    explicit Sides(const Corners3<Real>& t)
-        : edges{t[1] - t[0], t[2] - t[1], t[0] - t[2]},
-          squares{dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2])},
-          normal(product(edges[0], edges[1])), normal_square(dot(normal, normal)) {}
-};
-
-// A point on each triangle, and a direction along which nothing of one is beyond the other if these
-// points are the nearest.
+// A point on each triangle, and whether they lie within their edges rather than at an end.
 template <typename Real>
 struct Nearest {
     Vector3<Real> p, q;
-    Real square;
-    enum class Kind : unsigned char { kFaceOfA, kFaceOfB, kEdges } kind;
-    std::size_t edge_a, edge_b;
-    bool inside_a, inside_b; // whether the points lie within their edges and not at an end
+    NearFeatures features;
+    bool inside_a = false, inside_b = false;
+    Real square{};
 };
 
 template <typename Real>
@@ -124,179 +36,243 @@ template <typename Real>
     return value < Real(0.0) ? Real(0.0) : value > Real(1.0) ? Real(1.0) : value;
 }
 
+// To double, one place further out than the nearest one where digits are lost.
+[[nodiscard]] double rounded_up(double value) { return value; }
+[[nodiscard]] double rounded_up(const Twofold& value) {
+    return value.low > 0 ? std::nextafter(value.high, HUGE_VAL) : value.high;
+}
+[[nodiscard]] double rounded_down(double value) { return value; }
+[[nodiscard]] double rounded_down(const Twofold& value) {
+    return value.low < 0 ? std::nextafter(value.high, 0.0) : value.high;
+}
+
 template <typename Real>
 class Solver {
   public:
-    explicit Solver(const LocalPair<Real>& pair) : pair_(pair), a_(pair.a), b_(pair.b) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
+    explicit Solver(const LocalPair<Real>& pair)
+        : a_(pair.a), b_(pair.b), extent_(pair.extent), edges_a_(edges_of(pair.a)),
+          edges_b_(edges_of(pair.b)) {}
+
+    void try_all() {
+        for (std::uint8_t i = 0; i < 3; ++i) {
+            for (std::uint8_t j = 0; j < 3; ++j) {
                 try_edges(i, j);
             }
         }
-        try_face(pair.b, b_, pair.a, Nearest<Real>::Kind::kFaceOfB);
-        try_face(pair.a, a_, pair.b, Nearest<Real>::Kind::kFaceOfA);
+        const Vector3<Real> normal_a = normal_of(edges_a_), normal_b = normal_of(edges_b_);
+        for (std::uint8_t k = 0; k < 3; ++k) {
+            try_face_of_a(normal_a, k);
+            try_face_of_b(normal_b, k);
+        }
+    }
+
+    void try_these(const NearFeatures& features) {
+        using Kind = NearFeatures::Kind;
+        if (features.kind == Kind::kEdges) {
+            try_edges(features.part_a, features.part_b);
+        } else if (features.kind == Kind::kFaceOfA) {
+            try_face_of_a(normal_of(edges_a_), features.part_b);
+        } else if (features.kind == Kind::kFaceOfB) {
+            try_face_of_b(normal_of(edges_b_), features.part_a);
+        }
     }
 
     [[nodiscard]] const Nearest<Real>& nearest() const { return best_; }
 
     // Distance of the explicit points. Each is a corner plus one or two edges times factors within
-    // [0, 1], of which two sum to at most 1 plus a roundoff. With R the distance of the corners from
-    // the origin, edges are at most 2 R long, and the evaluation is off by 7 roundoffs of R, the sum
-    // of the factors by 2 more, the corners themselves by 1; their difference and its length by 4
-    // of the length.
+    // [0, 1], of which two sum to at most 1 plus a roundoff. With R the distance of the corners
+    // from the origin, edges are at most 2 R long, and the evaluation is off by 7 roundoffs of R,
+    // the sum of the factors by 2 more, the corners themselves by 1; their difference and its
+    // length by 4 of the length.
     [[nodiscard]] double high() const {
-        constexpr double kUnit = kRoundoff<Real>;
         const Real length = root_of(best_.square);
-        return rounded_up(length + Real(16 * kUnit * (rounded(length) + pair_.extent)));
+        return rounded_up(length + Real(16 * kUnit * (rounded(length) + extent_)));
     }
 
-    // Largest proven distance along the directions that the features give.
-    [[nodiscard]] double low() const {
-        Real low = bound_along(direction());
-        if (!is_tight(low)) {
-            low = std::max({low, bound_along(best_.q - best_.p), bound_along(a_.normal),
-                            bound_along(b_.normal)});
-            for (std::size_t i = 0; i < 3; ++i) {
-                low = std::max({low, bound_along(product(a_.normal, a_.edges[i])),
-                                bound_along(product(b_.normal, b_.edges[i]))});
-                for (std::size_t j = 0; j < 3; ++j) {
-                    low = std::max(low, bound_along(product(a_.edges[i], b_.edges[j])));
-                }
+    // A proof along the direction that the nearest features give.
+    [[nodiscard]] Real low_by_features() const {
+        return best_.features.kind == NearFeatures::Kind::kNone ? Real(0.0)
+                                                                : bound_along(direction());
+    }
+
+    // The best proof of all directions that two triangles can have.
+    [[nodiscard]] Real low_by_all() const {
+        const Vector3<Real> normal_a = normal_of(edges_a_), normal_b = normal_of(edges_b_);
+        Real low = std::max(
+            {bound_along(best_.q - best_.p), bound_along(normal_a), bound_along(normal_b)});
+        for (std::size_t i = 0; i < 3; ++i) {
+            low = std::max({low, bound_along(product(normal_a, edges_a_[i])),
+                            bound_along(product(normal_b, edges_b_[i]))});
+            for (std::size_t j = 0; j < 3; ++j) {
+                low = std::max(low, bound_along(product(edges_a_[i], edges_b_[j])));
             }
         }
-        return rounded_down(low);
+        return low;
+    }
+
+    [[nodiscard]] bool is_tight(const Real& low) const {
+        const Real length = root_of(best_.square);
+        return rounded(length - low) <= 32 * kUnit * (rounded(length) + extent_);
     }
 
   private:
-    // Of two edges. Ericson 2004, Real-Time Collision Detection, §5.1.9. Whatever the factors'
-    // error, clamped factors give points of the edges, and every point of an edge will do.
-    void try_edges(std::size_t i, std::size_t j) {
-        const Vector3<Real>&d = a_.edges[i], &e = b_.edges[j];
-        const Vector3<Real> r = pair_.a[i] - pair_.b[j];
-        const Real &dd = a_.squares[i], &ee = b_.squares[j];
-        const Real f = dot(e, r), c = dot(d, r), g = dot(d, e);
+    static constexpr double kUnit = kRoundoff<Real>;
+
+    [[nodiscard]] static Corners3<Real> edges_of(const Corners3<Real>& t) {
+        return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    }
+    [[nodiscard]] static Vector3<Real> normal_of(const Corners3<Real>& edges) {
+        return product(edges[0], edges[1]);
+    }
+
+    // Ericson 2004, Real-Time Collision Detection, §5.1.9. Whatever the factors' error, clamped
+    // factors give points of the edges, and every point of an edge will do.
+    void try_edges(std::uint8_t i, std::uint8_t j) {
+        const Vector3<Real>&d = edges_a_[i], &e = edges_b_[j];
+        const Vector3<Real> r = a_[i] - b_[j];
+        const Real dd = dot(d, d), ee = dot(e, e), de = dot(d, e);
+        const Real dr = dot(d, r), er = dot(e, r);
         const Real zero(0.0), one(1.0);
         Real s = zero, t = zero;
-        const Real denominator = dd * ee - g * g;
+        const Real denominator = dd * ee - de * de;
         if (denominator > zero) {
-            s = clamped<Real>((g * f - c * ee) / denominator);
+            s = clamped<Real>((de * er - dr * ee) / denominator);
         }
         if (ee > zero) {
-            t = (g * s + f) / ee;
+            t = (de * s + er) / ee;
         }
         if (!(t > zero && t < one)) {
             t = clamped(t);
-            s = dd > zero ? clamped<Real>((g * t - c) / dd) : zero;
+            s = dd > zero ? clamped<Real>((de * t - dr) / dd) : zero;
         }
-        consider({pair_.a[i] + s * d, pair_.b[j] + t * e, {}, Nearest<Real>::Kind::kEdges, i, j,
-                  s > zero && s < one, t > zero && t < one});
+        consider({a_[i] + s * d,
+                  b_[j] + t * e,
+                  {NearFeatures::Kind::kEdges, i, j},
+                  s > zero && s<one, t> zero && t < one});
     }
 
-    // Of a face and the corners of the other triangle that lie above it.
-    void try_face(const Corners3<Real>& face, const Sides<Real>& sides,
-                  const Corners3<Real>& corners, typename Nearest<Real>::Kind kind) {
-        if (!(rounded(sides.normal_square) > kLeastSquare)) {
-            return;
+    void try_face_of_a(const Vector3<Real>& normal, std::uint8_t corner) {
+        Vector3<Real> foot;
+        if (is_over_face(a_[0], edges_a_, normal, b_[corner], foot)) {
+            consider({foot, b_[corner], {NearFeatures::Kind::kFaceOfA, 0, corner}});
+        }
+    }
+    void try_face_of_b(const Vector3<Real>& normal, std::uint8_t corner) {
+        Vector3<Real> foot;
+        if (is_over_face(b_[0], edges_b_, normal, a_[corner], foot)) {
+            consider({a_[corner], foot, {NearFeatures::Kind::kFaceOfB, corner, 0}});
+        }
+    }
+
+    [[nodiscard]] static bool is_over_face(const Vector3<Real>& origin, const Corners3<Real>& edges,
+                                           const Vector3<Real>& normal, const Vector3<Real>& corner,
+                                           Vector3<Real>& foot) {
+        const Real square = dot(normal, normal);
+        if (!(rounded(square) > kLeastSquare)) {
+            return false;
         }
         const Real zero(0.0), one(1.0);
-        const Vector3<Real> u = sides.edges[0], v = -sides.edges[2];
-        const Vector3<Real> along_u = product(v, sides.normal), along_v = product(sides.normal, u);
-        for (const Vector3<Real>& corner : corners) {
-            const Vector3<Real> w = corner - face[0];
-            const Real on_u = dot(w, along_u), on_v = dot(w, along_v);
-            if (on_u < zero || on_v < zero || on_u + on_v > sides.normal_square) {
-                continue;
-            }
-            const Real x = clamped<Real>(on_u / sides.normal_square);
-            const Real y = std::min<Real>(clamped<Real>(on_v / sides.normal_square), one - x);
-            const Vector3<Real> foot = face[0] + (x * u + y * v);
-            const bool of_b = kind == Nearest<Real>::Kind::kFaceOfB;
-            consider({of_b ? corner : foot, of_b ? foot : corner, {}, kind, 0, 0, true, true});
+        const Vector3<Real> u = edges[0], v = -edges[2];
+        const Vector3<Real> turned = product(normal, corner - origin);
+        const Real on_u = dot(v, turned), on_v = -dot(u, turned);
+        if (on_u < zero || on_v < zero || on_u + on_v > square) {
+            return false;
         }
+        const Real x = clamped<Real>(on_u / square);
+        const Real y = std::min<Real>(clamped<Real>(on_v / square), one - x);
+        foot = origin + (x * u + y * v);
+        return true;
     }
 
     void consider(Nearest<Real> candidate) {
         const Vector3<Real> v = candidate.q - candidate.p;
         candidate.square = dot(v, v);
-        if (!any_ || candidate.square < best_.square) {
+        if (best_.features.kind == NearFeatures::Kind::kNone || candidate.square < best_.square) {
             best_ = candidate;
-            any_ = true;
         }
     }
 
     // Where the points are close together their difference is mostly noise; the directions of the
     // features they lie in are not.
     [[nodiscard]] Vector3<Real> direction() const {
-        const Vector3<Real> v = best_.q - best_.p;
-        if (best_.kind == Nearest<Real>::Kind::kFaceOfA) {
-            return a_.normal;
+        const NearFeatures& f = best_.features;
+        if (f.kind != NearFeatures::Kind::kEdges) {
+            return normal_of(f.kind == NearFeatures::Kind::kFaceOfA ? edges_a_ : edges_b_);
         }
-        if (best_.kind == Nearest<Real>::Kind::kFaceOfB) {
-            return b_.normal;
-        }
-        const Vector3<Real>&d = a_.edges[best_.edge_a], &e = b_.edges[best_.edge_b];
+        const Vector3<Real>&d = edges_a_[f.part_a], &e = edges_b_[f.part_b];
         if (best_.inside_a && best_.inside_b) {
             return product(d, e);
         }
+        const Vector3<Real> v = best_.q - best_.p;
         if (best_.inside_a) {
-            return v - (dot(v, d) / a_.squares[best_.edge_a]) * d;
+            return v - (dot(v, d) / dot(d, d)) * d;
         }
-        if (best_.inside_b) {
-            return v - (dot(v, e) / b_.squares[best_.edge_b]) * e;
-        }
-        return v;
+        return best_.inside_b ? v - (dot(v, e) / dot(e, e)) * e : v;
     }
 
     // With n any vector whatever, the triangles are at least (min n.b - max n.a) / |n| apart, or
     // the same with -n. The products are off by 3 roundoffs of |n| times the corners' distances,
     // the corners by one, the difference, the length and the quotient by a few of the result.
     [[nodiscard]] Real bound_along(const Vector3<Real>& n) const {
-        constexpr double kUnit = kRoundoff<Real>;
         const Real square = dot(n, n);
         if (!(rounded(square) > kLeastSquare)) {
             return Real(0.0);
         }
-        const auto& [a0, a1, a2] = pair_.a;
-        const auto& [b0, b1, b2] = pair_.b;
-        const std::array<Real, 3> on_a{dot(n, a0), dot(n, a1), dot(n, a2)};
-        const std::array<Real, 3> on_b{dot(n, b0), dot(n, b1), dot(n, b2)};
+        const std::array<Real, 3> on_a{dot(n, a_[0]), dot(n, a_[1]), dot(n, a_[2])};
+        const std::array<Real, 3> on_b{dot(n, b_[0]), dot(n, b_[1]), dot(n, b_[2])};
         const auto [low_a, high_a] = std::minmax({on_a[0], on_a[1], on_a[2]});
         const auto [low_b, high_b] = std::minmax({on_b[0], on_b[1], on_b[2]});
         const Real gap = std::max<Real>(low_b - high_a, low_a - high_b) / root_of(square);
-        const Real error(8 * kUnit * (std::fabs(rounded(gap)) + pair_.extent));
+        const Real error(8 * kUnit * (std::fabs(rounded(gap)) + extent_));
         return std::max<Real>(gap - error, Real(0.0));
     }
 
-    [[nodiscard]] bool is_tight(const Real& low) const {
-        const Real length = root_of(best_.square);
-        return rounded(length - low) <= 32 * kRoundoff<Real> * (rounded(length) + pair_.extent);
-    }
-
-    // To double, one place further out than the nearest one where digits are lost.
-    [[nodiscard]] static double rounded_up(double value) { return value; }
-    [[nodiscard]] static double rounded_up(const Twofold& value) {
-        return value.low > 0 ? std::nextafter(value.high, HUGE_VAL) : value.high;
-    }
-    [[nodiscard]] static double rounded_down(double value) { return value; }
-    [[nodiscard]] static double rounded_down(const Twofold& value) {
-        return value.low < 0 ? std::nextafter(value.high, 0.0) : value.high;
-    }
-
-    const LocalPair<Real>& pair_;
-    Sides<Real> a_, b_;
+    const Corners3<Real>&a_, &b_;
+    double extent_;
+    Corners3<Real> edges_a_, edges_b_;
     Nearest<Real> best_{};
-    bool any_ = false;
 };
 
 template <typename Real>
-[[nodiscard]] TriangleDistance measured(const Triangle& a, const Triangle& b) {
+[[nodiscard]] TriangleDistance measured(const Triangle& a, const Triangle& b,
+                                        const NearFeatures& features) {
     const LocalPair<Real> pair = localized<Real>(a, b);
-    const Solver<Real> solver(pair);
+    Solver<Real> solver(pair);
+    solver.try_these(features);
+    Real low = solver.low_by_features();
+    if (features.kind == NearFeatures::Kind::kNone || !solver.is_tight(low)) {
+        solver.try_all();
+        low = std::max(low, solver.low_by_features());
+    }
+    if (!solver.is_tight(low)) {
+        low = std::max(low, solver.low_by_all());
+    }
+    const Nearest<Real>& nearest = solver.nearest();
     const auto placed = [&](const Vector3<Real>& p) {
         return a[0] + scaled(nearest_double(p), pair.exponent);
     };
-    return {solver.low(), solver.high(), pair.exponent, placed(solver.nearest().p),
-            placed(solver.nearest().q)};
+    return {rounded_down(low), solver.high(),     pair.exponent,
+            nearest.features,  placed(nearest.p), placed(nearest.q)};
+}
+
+[[nodiscard]] NearFeatures swapped(const NearFeatures& f) {
+    using Kind = NearFeatures::Kind;
+    const Kind kind = f.kind == Kind::kFaceOfA   ? Kind::kFaceOfB
+                      : f.kind == Kind::kFaceOfB ? Kind::kFaceOfA
+                                                 : f.kind;
+    return {kind, f.part_b, f.part_a};
+}
+
+// Any order will do.
+[[nodiscard]] bool precedes(const Triangle& a, const Triangle& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (a[k][i] != b[k][i]) {
+                return a[k][i] < b[k][i];
+            }
+        }
+    }
+    return false;
 }
 
 } // namespace
@@ -306,8 +282,8 @@ DistanceBound distance_bound(const Triangle& a, const Triangle& b) {
     double square = 0;
     const double slack = 4 * kUnitRoundoff * pair.extent;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double low_a = smallest(pair.a[0][k], pair.a[1][k], pair.a[2][k]);
-        const double high_a = largest(pair.a[0][k], pair.a[1][k], pair.a[2][k]);
+        const double low_a = smallest(0.0, pair.a[1][k], pair.a[2][k]);
+        const double high_a = largest(0.0, pair.a[1][k], pair.a[2][k]);
         const double low_b = smallest(pair.b[0][k], pair.b[1][k], pair.b[2][k]);
         const double high_b = largest(pair.b[0][k], pair.b[1][k], pair.b[2][k]);
         const double gap = larger(larger(low_b - high_a, low_a - high_b) - slack, 0.0);
@@ -315,12 +291,13 @@ DistanceBound distance_bound(const Triangle& a, const Triangle& b) {
     }
     double low = std::sqrt(square) * (1 - 8 * kUnitRoundoff);
     const auto along = [&](const Vec3& n) {
-        const double nn = dot(n, n);
-        const double a0 = dot(n, pair.a[0]), a1 = dot(n, pair.a[1]), a2 = dot(n, pair.a[2]);
+        const double a1 = dot(n, pair.a[1]), a2 = dot(n, pair.a[2]);
         const double b0 = dot(n, pair.b[0]), b1 = dot(n, pair.b[1]), b2 = dot(n, pair.b[2]);
-        const double gap = larger(smallest(b0, b1, b2) - largest(a0, a1, a2),
-                                  smallest(a0, a1, a2) - largest(b0, b1, b2));
+        const double gap = larger(smallest(b0, b1, b2) - largest(0.0, a1, a2),
+                                  smallest(0.0, a1, a2) - largest(b0, b1, b2));
+        const double nn = dot(n, n);
         if (gap > 0 && nn > kLeastSquare) {
+            // As Solver::bound_along().
             const double length = gap / std::sqrt(nn);
             low = larger(low, length - 8 * kUnitRoundoff * (length + pair.extent));
         }
@@ -330,10 +307,20 @@ DistanceBound distance_bound(const Triangle& a, const Triangle& b) {
     return {low, pair.exponent};
 }
 
-TriangleDistance measure(const Triangle& a, const Triangle& b) { return measured<double>(a, b); }
+TriangleDistance measure(const Triangle& a, const Triangle& b) {
+    return measured<double>(a, b, {});
+}
 
-TriangleDistance measure_finely(const Triangle& a, const Triangle& b) {
-    return measured<Twofold>(a, b);
+TriangleDistance measure_finely(const Triangle& a, const Triangle& b,
+                                const NearFeatures& features) {
+    // In one order of the two, so that swapping them swaps the points and changes no digit.
+    if (!precedes(b, a)) {
+        return measured<Twofold>(a, b, features);
+    }
+    TriangleDistance found = measured<Twofold>(b, a, swapped(features));
+    std::swap(found.point_a, found.point_b);
+    found.features = swapped(found.features);
+    return found;
 }
 
 } // namespace obb

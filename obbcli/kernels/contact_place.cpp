@@ -1,5 +1,5 @@
 // Where a contact is: points, normals and the features that meet.
-#include "contact_point.hpp"
+#include "contact_normals.hpp"
 #include "contact_query.hpp"
 
 #include "closest_points.hpp"

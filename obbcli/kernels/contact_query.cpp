@@ -21,12 +21,14 @@ struct LaterFirst {
     }
 };
 
-// Rounding of a projection times the 1-norms of what is projected: the spin's matrix, its product
-// with pose and position (below 20 u), the axis and the dot product (below 10 u).
-constexpr double kRelative = Spin::kMatrixError + 80 * kUnitRoundoff;
+// Rounding of a projection, times the 1-norms of what is projected: the spin's matrix, its product
+// with the pose (5 u) and with positions (6 u), and sums over up to nine products (12 u).
+constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
 
 // A stalled pair waits for so many others to prove contact within the tolerance.
 constexpr std::uint64_t kStallPops = 2000;
+// And is looked at so many tolerances later itself.
+constexpr double kStallReach = 0x1p12;
 
 } // namespace
 
@@ -158,8 +160,17 @@ void ContactQuery::finish(std::optional<Contact> contact) {
     queue_.clear();
 }
 
+// Rounding hides when exactly a stalled pair touches. It may be seen to intersect a little later;
+// else all that can be said is how near it is.
 void ContactQuery::finish_stalled() {
     const Entry entry{stall_->time, stall_->a, stall_->b};
+    for (double later = time_tolerance_; later <= kStallReach * time_tolerance_; later *= 2) {
+        const double time = std::min(entry.time + later, duration_);
+        if (surely_intersect_at(entry, time)) {
+            finish(Contact{entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
+            return;
+        }
+    }
     Vec3 direction;
     const double distance = distance_at(entry, entry.time, direction);
     finish(
@@ -333,20 +344,22 @@ bool ContactQuery::prove_contact(const Entry& entry) {
         if (proof_ && proof_->time <= time) {
             continue;
         }
-        set_time(time);
-        const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
-        SpinningTriangle b(b_.triangle(entry.b), b_.spin());
-        const double error = triangle_error(a, b);
-        const Vec3 between = pivot_between_ + time * closing_velocity_;
-        for (Vec3& p : b.points) {
-            p = p + between;
-        }
-        if (surely_intersect(a.points, b.points, error)) {
+        if (surely_intersect_at(entry, time)) {
             proof_ = Entry{time, entry.a, entry.b};
         }
     }
-    set_time(entry.time);
     return false;
+}
+
+bool ContactQuery::surely_intersect_at(const Entry& entry, double time) {
+    set_time(time);
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const Vec3 between = pivot_between_ + time * closing_velocity_;
+    for (Vec3& p : b.points) {
+        p = p + between;
+    }
+    return surely_intersect(a.points, b.points, triangle_error(a, b));
 }
 
 // A proven upper bound on the distance of two triangles at a time, mesh units, and the direction

@@ -105,6 +105,7 @@ class ContactQuery {
     void meet_in_translation(const Entry& entry);
     void meet_boxes(const Entry& entry);
     [[nodiscard]] bool prove_contact(const Entry& entry);
+    [[nodiscard]] bool surely_intersect_at(const Entry& entry, double time);
     [[nodiscard]] double distance_at(const Entry& entry, double time, Vec3& direction);
     [[nodiscard]] bool has_ended();
     void finish_stalled();

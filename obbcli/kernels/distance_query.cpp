@@ -19,16 +19,23 @@ namespace {
 // Bounds this close, as a share of the distance, are settled: a few units in its last place.
 constexpr double kSettled = 0x1p-50;
 // So many pairs of triangles are measured one by one rather than by smaller boxes.
-#ifndef BATCH
-#define BATCH 6
-#define PATIENCE 2048
-#define SMALL 128
-#endif
-constexpr std::uint32_t kBatch = BATCH;
-// A search that takes longer than this does small pairs depth-first: the queue costs more than it
-// saves once the least distance is about known.
-constexpr std::uint64_t kPatience = PATIENCE;
-constexpr std::uint32_t kSmall = SMALL;
+constexpr std::uint32_t kBatch = 6;
+// A search that takes more pops than this does pairs of so few triangles depth-first: the queue
+// costs more than it saves once the least distance is about known.
+constexpr std::uint64_t kPatience = 512;
+constexpr std::uint32_t kSmall = 512;
+// Lengths below this share of the scene may lose digits to underflow: they are not told apart.
+constexpr double kLeastLength = 0x1p-1000;
+
+// A length times 2^exponent, one place further down or up where that rounds.
+[[nodiscard]] double scaled_down(double length, int exponent) {
+    const double result = std::ldexp(length, exponent);
+    return std::ldexp(result, -exponent) > length ? std::nextafter(result, 0.0) : result;
+}
+[[nodiscard]] double scaled_up(double length, int exponent) {
+    const double result = std::ldexp(length, exponent);
+    return std::ldexp(result, -exponent) < length ? std::nextafter(result, HUGE_VAL) : result;
+}
 
 [[nodiscard]] std::pair<std::int64_t, std::int64_t> ids(const DistanceBounds& b) {
     return {b.triangle_a, b.triangle_b};
@@ -43,15 +50,15 @@ DistanceQuery::DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeVi
     bound_ = frame.bound;
     shrink_ = frame.shrink;
     exponent_ = frame.exponent;
+    unit_ = std::ldexp(1.0, std::min(-exponent_, 1000)); // of lengths beyond that none is in use
     tolerance_ = std::ldexp(options.tolerance, -exponent_);
     box_units_ = {std::ldexp(1.0, a.scale_exponent - exponent_),
                   std::ldexp(1.0, b.scale_exponent - exponent_)};
+    queue_.push_back({0.0, a.root(), b.root(), {}});
+    descend(queue_.front());
 }
 
 bool DistanceQuery::advance(std::uint64_t max_pops) {
-    if (!has_begun_) {
-        begin();
-    }
     for (;; --max_pops) {
         while (!stack_.empty() && is_settled(stack_.back().key)) {
             low_ = std::min(low_, stack_.back().key);
@@ -75,13 +82,6 @@ bool DistanceQuery::advance(std::uint64_t max_pops) {
     }
 }
 
-void DistanceQuery::begin() {
-    const Pair roots{0.0, a_.tree().root(), b_.tree().root(), false};
-    has_begun_ = true;
-    queue_.push_back(roots);
-    descend(roots);
-}
-
 // Straight down to one pair of triangles, the nearer child each time: its distance keeps most of
 // the rest from the queue.
 void DistanceQuery::descend(Pair pair) {
@@ -98,8 +98,8 @@ void DistanceQuery::descend(Pair pair) {
         const Side one = reach(body, refs[0]), two = reach(body, refs[1]);
         const double to_one = bound(one, other), to_two = bound(two, other);
         const Vec3 m = middle(other);
-        const bool is_one = to_one != to_two ? to_one < to_two
-                                             : norm(middle(one) - m) < norm(middle(two) - m);
+        const bool is_one =
+            to_one != to_two ? to_one < to_two : norm(middle(one) - m) < norm(middle(two) - m);
         return refs[is_one ? 0 : 1];
     };
     for (;;) {
@@ -152,7 +152,7 @@ DistanceQuery::Side DistanceQuery::reach(const PosedTree& body, const NodeRef& r
 }
 
 void DistanceQuery::visit(const Pair& pair) {
-    if (pair.is_measured) {
+    if (pair.features.kind != NearFeatures::Kind::kNone) {
         refine(pair);
         return;
     }
@@ -176,7 +176,7 @@ void DistanceQuery::open(const Pair& pair) {
     const Node& node = body.tree().node(ref);
     const auto add_child = [&](const NodeRef& child, double key) {
         key = std::max(pair.key, key);
-        add(kOpensA ? Pair{key, child, pair.b, false} : Pair{key, pair.a, child, false});
+        add(kOpensA ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
     };
     if (TreeView::is_leaf(node)) {
         for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
@@ -220,7 +220,12 @@ double DistanceQuery::bound(const Side& a, const Side& b) {
 }
 
 double DistanceQuery::in_unit(double length, int exponent) const {
-    return std::ldexp(length, exponent - exponent_);
+    return exponent == 0 ? unit_ * length : std::ldexp(length, exponent - exponent_);
+}
+
+double DistanceQuery::low_in_unit(double length, int exponent) const {
+    const double low = in_unit(length, exponent);
+    return low < kLeastLength ? 0.0 : low;
 }
 
 bool DistanceQuery::is_settled(double key) const {
@@ -230,7 +235,7 @@ bool DistanceQuery::is_settled(double key) const {
 void DistanceQuery::add(const Pair& pair) {
     if (is_settled(pair.key)) {
         low_ = std::min(low_, pair.key);
-    } else if (counts_.pops > kPatience && !pair.is_measured &&
+    } else if (counts_.pops > kPatience && pair.features.kind == NearFeatures::Kind::kNone &&
                pair.a.triangle_count() + pair.b.triangle_count() <= kSmall) {
         stack_.push_back(pair);
     } else {
@@ -250,35 +255,40 @@ void DistanceQuery::measure_all(const Pair& pair) {
         for (std::uint32_t j = pair.b.begin; j < pair.b.end; ++j) {
             const Triangle& b = of_b[j - pair.b.begin];
             const DistanceBound least = distance_bound(a, b);
-            const double key = std::max(pair.key, in_unit(least.low, least.exponent));
+            const double key = std::max(pair.key, low_in_unit(least.low, least.exponent));
             ++counts_.triangle_tests;
             if (is_settled(key)) {
                 low_ = std::min(low_, key);
             } else {
-                measure_one({key, ref_a, TreeView::triangle_ref(pair.b, j), true}, a, b);
+                measure_one({key, ref_a, TreeView::triangle_ref(pair.b, j), {}}, a, b);
             }
         }
     }
 }
 
 void DistanceQuery::measure_one(const Pair& pair, const Triangle& a, const Triangle& b) {
-    ++counts_.measured;
     const TriangleDistance found = measure(a, b);
     Pair measured = pair;
-    measured.key = std::max(pair.key, in_unit(found.low, found.exponent));
-    if (measured.key == 0 && triangles_intersect(a, b)) {
-        touch(pair.a, pair.b);
-        return;
+    measured.key = std::max(pair.key, low_in_unit(found.low, found.exponent));
+    if (measured.key == 0) {
+        const TriangleVerdict verdict = test_triangles(a, b);
+        counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
+        if (verdict.intersects) {
+            touch(pair.a, pair.b);
+            return;
+        }
     }
+    measured.features = found.features;
     take(found, pair.a, pair.b);
     add(measured);
 }
 
 void DistanceQuery::refine(const Pair& pair) {
-    ++counts_.fine_triangle_tests;
-    const TriangleDistance found = measure_finely(a_.triangle(pair.a), b_.triangle(pair.b));
+    ++counts_.exact_triangle_tests;
+    const TriangleDistance found =
+        measure_finely(a_.triangle(pair.a), b_.triangle(pair.b), pair.features);
     take(found, pair.a, pair.b);
-    low_ = std::min(low_, std::max(pair.key, in_unit(found.low, found.exponent)));
+    low_ = std::min(low_, std::max(pair.key, low_in_unit(found.low, found.exponent)));
 }
 
 // Boxes that stand for what they hold: any of their triangles will do for an upper bound.
@@ -294,7 +304,7 @@ void DistanceQuery::close(const Pair& pair) {
 }
 
 void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b) {
-    const double high = in_unit(found.high, found.exponent);
+    const double high = std::max(in_unit(found.high, found.exponent), kLeastLength);
     const DistanceBounds one{0, 0, found.point_a, found.point_b, a_.id(a), b_.id(b)};
     if (high < high_ || (high == high_ && ids(one) < ids(best_))) {
         high_ = high;
@@ -312,7 +322,6 @@ void DistanceQuery::touch(const NodeRef& a, const NodeRef& b) {
 }
 
 DistanceBounds DistanceQuery::bounds() const {
-    DistanceBounds result = best_;
     double low = std::min(low_, high_);
     if (!queue_.empty()) {
         low = std::min(low, queue_.front().key);
@@ -320,8 +329,12 @@ DistanceBounds DistanceQuery::bounds() const {
     for (const Pair& pair : stack_) {
         low = std::min(low, pair.key);
     }
-    result.low = std::ldexp(low, exponent_);
-    result.high = std::ldexp(high_, exponent_);
+    DistanceBounds result = best_;
+    result.low = scaled_down(low, exponent_);
+    result.high = scaled_up(high_, exponent_);
+    if (!std::isfinite(result.high)) {
+        throw std::domain_error("the distance exceeds the range of double");
+    }
     return result;
 }
 

@@ -27,8 +27,7 @@ struct DistanceQueryOptions {
 struct DistanceQueryCounts {
     std::uint64_t box_tests = 0;
     std::uint64_t triangle_tests = 0;
-    std::uint64_t fine_triangle_tests = 0;
-    std::uint64_t measured = 0;
+    std::uint64_t exact_triangle_tests = 0; // those that took more digits than double has
     std::uint64_t pops = 0;
 };
 
@@ -62,7 +61,7 @@ class DistanceQuery {
     struct Pair {
         double key; // proven: nothing in `a` is nearer to anything in `b`
         NodeRef a, b;
-        bool is_measured; // a pair of triangles that only more digits can tell more about
+        NearFeatures features; // where two triangles were measured: only more digits tell more
     };
     struct IsLater {
         bool operator()(const Pair& p, const Pair& q) const { return p.key > q.key; }
@@ -74,7 +73,6 @@ class DistanceQuery {
         Triangle triangle; // in the frame of the boxes
     };
 
-    void begin();
     void descend(Pair pair);
     void visit(const Pair& pair);
     template <bool kOpensA>
@@ -94,6 +92,7 @@ class DistanceQuery {
     [[nodiscard]] std::array<double, 2> bounds_of_children(const std::array<NodeRef, 2>& children,
                                                            const Side& other);
     [[nodiscard]] double in_unit(double length, int exponent) const;
+    [[nodiscard]] double low_in_unit(double length, int exponent) const;
 
     // Whether a lower bound is as good as the least distance found.
     [[nodiscard]] bool is_settled(double key) const;
@@ -106,6 +105,7 @@ class DistanceQuery {
     RoundingBound bound_{};
     double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
     int exponent_ = 0;
+    double unit_ = 1; // 2^-exponent_
     double tolerance_ = 0;
     std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
     std::vector<Pair> queue_;               // a heap, the least key in front
@@ -113,7 +113,6 @@ class DistanceQuery {
     double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points
     DistanceBounds best_{};
-    bool has_begun_ = false;
     DistanceQueryCounts counts_;
 };
 

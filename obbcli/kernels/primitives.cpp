@@ -56,7 +56,9 @@ void test_pairs(Repeated<A> a, Repeated<B> b, const RepeatedMotion& motion, unsi
     in_parts(count, part_count(count, threads),
              [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t k = begin; k < end; ++k) {
-                     verdicts[k] = test_pair(a[k], b[k], motion[k]).intersects ? 1 : 0;
+                     const PairVerdict verdict = test_pair(a[k], b[k], motion[k]);
+                     verdicts[k] = static_cast<std::uint8_t>((verdict.intersects ? kMeets : 0) |
+                                                             (verdict.exact ? kExact : 0));
                  }
              });
 }

@@ -33,7 +33,11 @@ struct RepeatedMotion {
     }
 };
 
-// Writes whether pair k meets to verdicts[k].
+// Of a byte of verdicts: whether the pair meets, and whether it took exact arithmetic to know.
+inline constexpr std::uint8_t kMeets = 1;
+inline constexpr std::uint8_t kExact = 2;
+
+// Writes what is found of pair k to verdicts[k].
 template <typename A, typename B>
 void test_pairs(Repeated<A> a, Repeated<B> b, const RepeatedMotion& motion, unsigned threads,
                 std::span<std::uint8_t> verdicts);

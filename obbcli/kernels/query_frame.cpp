@@ -84,9 +84,8 @@ QueryFrame set_common_frame(PosedTree& a, PosedTree& b) {
     const double skew = skew_of(matrix);
     // No coordinate or translation exceeds 1 here: 2^-46 is 128 units of roundoff, 8 the sum over
     // both bodies of |vertex|_1 + |translation|.
-    return {exponent,
-            {64 * kUnitRoundoff + 8 * skew, 0x1p-46 * 8.0 + kTiny},
-            shrink_of(skew_a + skew)};
+    return {
+        exponent, {64 * kUnitRoundoff + 8 * skew, 0x1p-46 * 8.0 + kTiny}, shrink_of(skew_a + skew)};
 }
 
 } // namespace obb
