@@ -151,6 +151,20 @@ def test_answers_do_not_depend_on_the_unit_of_length(exponent: int, turned: bool
     assert [tuple(pair) for pair in plain.tolist()] == truth
 
 
+@pytest.mark.parametrize("exponent", [-900, -100, -50, -40, 50, 900])
+@pytest.mark.parametrize("turned", [False, True])
+def test_cost_does_not_depend_on_the_unit_of_length(exponent: int, turned: bool) -> None:
+    pair = scenes.POSE_CLASSES["gap_1e-2"](2000)
+    counts = []
+    for unit in (1.0, 2.0**exponent):
+        a = Mesh(pair.a.vertices * unit, pair.a.faces)
+        b = Mesh((pair.b.vertices if turned else pair.posed_b) * unit, pair.b.faces)
+        pose = Pose(pair.rotation, pair.translation * unit) if turned else Pose()
+        counts.append(obbcli.collide(a, Body(b, pose)).stats[:4])
+
+    assert counts[0] == counts[1]
+
+
 @pytest.mark.parametrize("name", NASTY)
 def test_nasty_meshes_meet_themselves_as_brute_force_says(name: str) -> None:
     surface = NASTY[name]()

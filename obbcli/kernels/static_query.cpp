@@ -52,6 +52,19 @@ void require_range(const PosedTree& body) {
     }
 }
 
+// A power of two above every coordinate. A translation of zero has no length to count:
+// exponent_of() would take it for 1, and small meshes would sink into the absolute bound.
+int exponent_of_scene(const PosedTree& a, const PosedTree& b) {
+    int exponent = std::max(a.tree().scale_exponent, b.tree().scale_exponent);
+    for (const PosedTree* body : {&a, &b}) {
+        const double largest = norm_inf(body->pose().translation);
+        if (largest > 0) {
+            exponent = std::max(exponent, exponent_of(largest));
+        }
+    }
+    return exponent;
+}
+
 } // namespace
 
 void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
@@ -135,9 +148,7 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
 void StaticQuery::set_frames() {
     const Pose& pa = a_.pose();
     const Pose& pb = b_.pose();
-    exponent_ =
-        std::max({a_.tree().scale_exponent, b_.tree().scale_exponent,
-                  exponent_of(norm_inf(pa.translation)), exponent_of(norm_inf(pb.translation))});
+    exponent_ = exponent_of_scene(a_, b_);
     const double tiny = 0x1p-900;
     if (pa == pb) {
         // A common pose moves no box against the other. It still rounds the triangles.
