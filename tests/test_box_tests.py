@@ -158,12 +158,25 @@ def test_touching_specks_far_smaller_than_the_scene_are_never_separated() -> Non
     # The second surface also has a triangle 2^300 times as large, which sets its unit.
     random = np.random.default_rng(1)
     large = np.array([[100.0, 100, -100], [101, 100, -100], [100, 101, -100]])
-    for exponent in (-100, -149, -300):
+    for exponent in (-100, -149, -300, -358, -532, -540, -1000):
         for _ in range(40):
             a, b = (random.integers(-3, 4, (6, 3)) * 2.0**exponent for _ in range(2))
             b = np.concatenate((_with(b, random, a[0]), large))
 
             touch(a, Pose(), b, Pose(), random)
+
+
+def test_speck_that_touches_is_not_separated_by_products_that_underflow() -> None:
+    # Twice a length of 2^-532 times another vanishes, and with it the bound on its rounding.
+    a = [[3, -1, -2], [-1, 3, 0], [2, 1, 1], [-2, 1, 0], [3, -2, -2], [1, 2, 3]]
+    b = [[-3, 3, 0], [2, -1, 1], [0, 3, 3]]
+    large = np.array([[100.0, 100, -100], [101, 100, -100], [100, 101, -100]])
+    faces = [(0, 1, 2), (3, 4, 5)]
+    specks = Mesh(np.ldexp(np.array(a, float), -532), faces)
+    mixed = Mesh(np.concatenate((np.ldexp(np.array(b, float), -532), large)), faces)
+    trees = [ObbTree.build(mesh, split="center") for mesh in (specks, mixed)]
+
+    assert obbcli.triangle_pairs(*trees).tolist() == [[1, 0]]
 
 
 @pytest.mark.parametrize("turn", range(4))

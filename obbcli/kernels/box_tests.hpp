@@ -11,7 +11,8 @@
 
 namespace obb {
 
-// What a projection may be off by: `relative` times the sizes in play, plus `absolute`.
+// What a projection may be off by: `relative` times the sizes in play, plus `absolute`, which is at
+// least 2^-900 for coordinates up to 2^10.
 struct RoundingBound {
     double relative;
     double absolute;
@@ -20,6 +21,10 @@ struct RoundingBound {
 // Boxes with axes orthonormal up to what bound.relative allows for. Axes are not normalised: where
 // two edges are nearly parallel both sides of the comparison vanish, the bound does not, and the
 // axis is inconclusive, which is the safe side.
+//
+// Products that underflow lose at most 2^-1075 each. Here every product has an entry of an axis or
+// the relative bound for a factor, both at most about 1: no axis sums, nor carries on, more than a
+// few dozen of them, times coordinates up to 2^10, which stays far below bound.absolute.
 //
 // Each group of axes is judged as a whole: which of its axes separates is as good as random, and a
 // mispredicted branch costs more than an axis. On packs a mask tells which pairs are separated.
@@ -94,14 +99,17 @@ namespace detail {
         }
     }
     // An error of e in the coordinates moves a projection on a product of edges by no more than
-    // 4 e times the other factors.
+    // 4 e times the other factors. Small edges times small coordinates may underflow, and so may
+    // that bound: a few dozen products lose at most 2^-1075 each, times coordinates up to 2^10.
+    constexpr double kLostToUnderflow = 0x1p-1000;
     const std::array<Vec3, 3> edges{p[1] - p[0], p[2] - p[0], p[2] - p[1]};
     const Vec3 n = cross(edges[0], edges[1]);
-    const double e_normal = 4.0 * e * (norm_1(edges[0]) + norm_1(edges[1])) * size;
+    const double e_normal =
+        4.0 * e * (norm_1(edges[0]) + norm_1(edges[1])) * size + kLostToUnderflow;
     if (std::fabs(dot(n, p[0])) > dot(abs(n), h) + e_normal) {
         return true;
     }
-    const double e_edge = 4.0 * e * size;
+    const double e_edge = 4.0 * e * size + kLostToUnderflow;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (const Vec3& edge : edges) {
