@@ -242,8 +242,11 @@ class Body:
     motion: Motion = _AT_REST
 
     def __post_init__(self) -> None:
-        # Told by what it has: trees belong to a layer above this one.
-        if not (isinstance(self.shape, (str, os.PathLike)) or hasattr(self.shape, "bounds")):
+        # Told by what it has: trees belong to a layer above this one. By its type, since a tree's
+        # bounds cost as much as a whole mesh, and may find it damaged.
+        if not isinstance(self.shape, (str, os.PathLike)) and not hasattr(
+            type(self.shape), "bounds"
+        ):
             _refuse("shape", self.shape, "pass an ObbTree, a Mesh or a path")
         if not isinstance(self.pose, Pose):
             _refuse("pose", self.pose, "pass a Pose")

@@ -207,27 +207,36 @@ class ObbTree:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The mesh, its triangles in file order."""
-        triangles = np.empty((self.triangle_count, 3), np.int32)
+        """The mesh, its triangles in file order; TreeFileError where a damaged tree holds none."""
         ids = self._arrays.triangle_ids
-        if int(ids.max()) >= len(triangles):
-            raise TreeFileError(self._where, "a triangle id is out of range", "build it again")
+        is_there = np.zeros(self.triangle_count, dtype=bool)
+        is_there[ids[ids < self.triangle_count]] = True
+        if not is_there.all():
+            raise TreeFileError(
+                self._where,
+                f"no triangle has the id {int(np.argmin(is_there))}",
+                "build it again from the mesh",
+            )
+        triangles = np.empty((self.triangle_count, 3), np.int32)
         triangles[ids] = self._arrays.corners.view(np.int32)
-        return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
+        try:
+            return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
+        except MeshError as fault:
+            raise TreeFileError(self._where, str(fault), "build it again from the mesh") from fault
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """Lower and upper corner of the mesh's axis-aligned box, (2, 3), mesh units."""
+        """Lower and upper corner of the mesh's axis-aligned box, (2, 3), mesh units; as `mesh`."""
         return self.mesh.bounds
 
     @property
     def size(self) -> float:
-        """Diagonal of `bounds`, mesh units."""
+        """Diagonal of `bounds`, mesh units; as `mesh`."""
         return self.mesh.size
 
     @property
     def surface_centroid(self) -> NDArray[np.float64]:
-        """Area-weighted centroid of the surface, (3,): the default pivot."""
+        """Area-weighted centroid of the surface, (3,): the default pivot; as `mesh`."""
         return self.mesh.surface_centroid
 
     @property

@@ -11,7 +11,7 @@ import tree_oracles
 from tree_meshes import bumpy_grid, needles, soup
 from tree_oracles import NODE
 
-from obbcli import Mesh, ObbTree, TreeFileError
+from obbcli import Body, Mesh, ObbTree, TreeFileError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -118,6 +118,40 @@ def test_check_refuses_swapped_and_repeated_ids() -> None:
     refuses(replace(arrays, triangle_ids=ids), f"triangle id {ids[7]} is out of range or stands")
     ids[3] = 40
     refuses(replace(arrays, triangle_ids=ids), "triangle id 40 is out of range")
+
+
+def _with_value(arrays: TreeArrays, name: str, place: Any, value: float) -> TreeArrays:
+    """Return the arrays with one number of one of them changed in a copy."""
+    changed = getattr(arrays, name).copy()
+    changed[place] = value
+    return replace(arrays, **{name: changed})
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "value", "fault"),
+    [
+        ("triangle_ids", 0, 40, "no triangle has the id"),
+        ("triangle_ids", 3, None, "no triangle has the id"),
+        ("corners", (9, 1), 120, "uses vertex 120 of 120"),
+        ("corners", (9, 1), 2**32 - 1, "uses vertex -1 of 120"),
+        ("vertices", (5, 2), np.nan, "vertex 5: z is nan"),
+        ("vertices", (5, 2), np.inf, "vertex 5: z is inf"),
+    ],
+)
+def test_damaged_tree_gives_no_mesh(name: str, place: Any, value: Any, fault: str) -> None:
+    arrays = arrays_of(soup(40))
+    value = arrays.triangle_ids[7] if value is None else value
+    tree = ObbTree(_with_value(arrays, name, place, value))
+
+    for figure in ("mesh", "bounds", "size", "surface_centroid"):
+        with pytest.raises(TreeFileError, match=fault):
+            getattr(tree, figure)
+
+
+def test_body_of_a_tree_asks_it_for_no_mesh() -> None:
+    tree = ObbTree(_with_value(arrays_of(soup(40)), "triangle_ids", 3, 40))
+
+    assert Body(tree).shape is tree
 
 
 def test_check_refuses_triangles_under_boxes_that_do_not_hold_them() -> None:
