@@ -26,6 +26,8 @@ struct RoundingBound {
 // the relative bound for a factor, both at most about 1: no axis sums, nor carries on, more than a
 // few dozen of them, times coordinates up to 2^10, which stays far below bound.absolute.
 //
+// Comparisons are such that a NaN, from the damaged box of an unverified tree, separates nothing.
+//
 // Each group of axes is judged as a whole: which of its axes separates is as good as random, and a
 // mispredicted branch costs more than an axis. On packs a mask tells which pairs are separated.
 template <typename Real>
@@ -38,7 +40,7 @@ template <typename Real>
 
     // c[i][j] = A_i . B_j, t[i] = A_i . D
     Real c[3][3], r[3][3], t[3];
-    auto apart = d.x != d.x; // nothing yet; of the right type
+    auto apart = d.x < d.x; // never, whatever d.x is; of the right type
     for (std::size_t i = 0; i < 3; ++i) {
         t[i] = dot(a.axes[i], d);
         for (std::size_t j = 0; j < 3; ++j) {
@@ -74,8 +76,10 @@ template <typename Real>
 
 namespace detail {
 
+// False where a NaN is among them, which std::min and std::max may pass over.
 [[nodiscard]] inline bool is_outside(double p0, double p1, double p2, double radius) {
-    return std::min({p0, p1, p2}) > radius || std::max({p0, p1, p2}) < -radius;
+    return ((p0 > radius) & (p1 > radius) & (p2 > radius)) |
+           ((p0 < -radius) & (p1 < -radius) & (p2 < -radius));
 }
 
 } // namespace detail
