@@ -12,14 +12,17 @@ from obbcli.cli.options import GuardedHelp
 # Name: module of this package; in the order a newcomer meets them.
 _COMMANDS = {
     "collide": "collide",
+    "first-contact": "first_contact",
     "build": "build",
     "info": "info",
 }
 
 _WELCOME = """\
-obbtree: do these two triangle meshes touch?
+obbtree: do these two triangle meshes touch, and when first?
 
   obbtree collide gear.stl shaft.obj     do they touch, and which triangles?
+  obbtree first-contact gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -6
+                                         when and where do they first touch?
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 
@@ -49,7 +52,7 @@ class _App(GuardedHelp, click.Group):
 @click.version_option(__version__, "-V", "--version", message="%(prog)s %(version)s")
 @click.pass_context
 def app(context: click.Context) -> int:
-    """Do two triangle meshes touch, and where? Exact answers from any mesh files.
+    """Do two triangle meshes touch, and when and where first? Proven answers from any mesh files.
 
     Meshes: STL, OBJ, PLY, OFF, glTF, VTK, Gmsh, Abaqus and more; trees: .obbt, made by build.
     Lengths are in the meshes' own unit, angles in radians unless --degrees is given.

@@ -1,14 +1,13 @@
-"""`obbtree collide`: do two bodies touch, and which triangles?"""
+"""`obbtree collide`: do two bodies touch, at rest or moving, and which triangles?"""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli import __version__
-from obbcli.cli.boundary import ExitCode, UsageError, note
+from obbcli.cli.asking import exit_code, naming_options, refuse_unanswered, run, with_load_time
+from obbcli.cli.boundary import UsageError, note
 from obbcli.cli.inputs import read_pair
 from obbcli.cli.options import Command, common_options, option, verify_option
 from obbcli.cli.output import emit
@@ -36,6 +35,7 @@ _QUESTION = "Question"
 Examples:
   obbtree collide gear.stl shaft.obj --translate-b 0 0 12.5
   obbtree collide part.stl clamp.obbt --all-pairs --limit 20
+  obbtree collide robot.stl shelf.stl --vel 0 0 -50 --duration 3
   obbtree collide a.stl b.stl --exit-code --quiet || echo "they touch"
 """,
 )
@@ -70,65 +70,89 @@ def command(
     common: CommonOptions,
     **flags: Any,
 ) -> int:
-    """Do A and B touch? Touching counts; the answer is exact.
+    """Do A and B touch, at rest or at any time of a motion? Touching counts; the answer is exact.
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. Triangles are
     named by their number in their file, from 0.
     """
-    _refuse_contradictions(accuracy, flags)
     question = Question.of(pose, motion, accuracy)
-    _refuse_unanswered(question, solid=flags["solid"])
+    _refuse_contradictions(question, accuracy, flags)
+    refuse_unanswered(
+        (
+            ("--solid", flags["solid"], "leave it out to ask about the surfaces"),
+            ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
+        )
+    )
     files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
-    record = _ask(question, files, flags, detailed=common.json)
+    with naming_options(question):
+        record = _ask(question, files, flags, common)
     _show(record, common)
-    return _exit_code(record["result"]["status"], asked=flags["exit_code"])
+    return exit_code(record["result"]["status"], asked=flags["exit_code"])
 
 
-def _refuse_contradictions(accuracy: AccuracyOptions, flags: dict[str, Any]) -> None:
+def _refuse_contradictions(
+    question: Question, accuracy: AccuracyOptions, flags: dict[str, Any]
+) -> None:
     """Refuse flags of which one would be ignored."""
     if flags["limit"] is not None and not flags["all_pairs"]:
         raise UsageError("--limit", "cuts the list of --all-pairs", "add --all-pairs")
-    if flags["all_pairs"] and accuracy.given():
-        raise UsageError("--all-pairs", "is always exact", "leave out the accuracy options")
-
-
-def _refuse_unanswered(question: Question, *, solid: bool) -> None:
-    """Refuse what this version cannot answer: to ignore it would make the answer a lie."""
-    accuracy = question.accuracy
-    unanswered = (
-        ("--vel, --omega", question.moves, "leave them out, or ask about t = 0 by --duration 0"),
-        ("--solid", solid, "leave it out to ask about the surfaces"),
-        ("--method sampled", accuracy.method == "sampled", "leave it out"),
-        ("--clearance", accuracy.clearance > 0, "leave it out to ask about contact"),
-    )
-    for what, is_asked, remedy in unanswered:
-        if is_asked:
-            raise UsageError(what, f"not answered by version {__version__} yet", remedy)
+    if not flags["all_pairs"]:
+        return
+    if question.moves:
+        remedy = "leave the motion out, or add --duration 0"
+        raise UsageError("--all-pairs", "is asked of bodies at rest, at t = 0", remedy)
+    for name, value in (
+        ("--timeout", accuracy.timeout),
+        ("--max-iterations", accuracy.max_iterations),
+    ):
+        if value is not None:
+            fault = "would cut the list of --all-pairs at any place"
+            raise UsageError(name, fault, "leave it out, or cut the list with --limit")
+    if accuracy.given():
+        fault = "lists triangles that intersect, always exactly"
+        raise UsageError("--all-pairs", fault, "leave out the accuracy options")
 
 
 def _ask(
-    question: Question, files: tuple[Input, Input], flags: dict[str, Any], *, detailed: bool
+    question: Question,
+    files: tuple[Input, Input],
+    flags: dict[str, Any],
+    common: CommonOptions,
 ) -> Record:
-    """Put the question and return its record; `detailed` adds what only a document shows."""
-    from obbcli.query import collide
+    """Put the question and return its record."""
     from obbcli.report.collide import collide_record
     from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
-    answer = collide(*bodies, question.duration, question.accuracy)
+    answer = _answer(question, bodies, progress=common.shows_progress)
+    # Hashes and centroids cost time, and only a document shows them.
     return collide_record(
-        [file.source(with_sha256=detailed) for file in files],
-        motion_part(bodies, question.duration) if detailed else {},
+        [file.source(with_sha256=common.json) for file in files],
+        motion_part(bodies, question.duration) if common.json else {},
         question.accuracy,
-        _with_load_time(answer, sum(file.seconds for file in files)),
+        with_load_time(answer, files),
         _pairs(bodies, flags["limit"]) if flags["all_pairs"] else None,
     )
 
 
-def _with_load_time(answer: Collision, load: float) -> Collision:
-    """Return the answer with the time that the files took: they were read before the question."""
-    seconds = {**answer.stats.seconds, "load": load}
-    return replace(answer, stats=answer.stats._replace(seconds=seconds))
+def _answer(question: Question, bodies: tuple[Body, Body], *, progress: bool) -> Collision:
+    """Return what `obbcli.collide` says; a moving question can be watched and interrupted."""
+    from obbcli.contact import Query
+    from obbcli.query import collide
+    from obbcli.results import Collision
+
+    if not question.moves:
+        return collide(*bodies, question.duration, question.accuracy)
+    query = Query(*bodies, question.duration, question.accuracy, any_contact=True)
+    found = run(query, question.accuracy, progress=progress)
+    a, b = found.triangle_a, found.triangle_b
+    return Collision(
+        status=found.status,
+        witness=None if a is None or b is None else (a, b),
+        approximate=found.approximate,
+        error_bound=found.error_bound,
+        stats=found.stats,
+    )
 
 
 def _pairs(bodies: tuple[Body, Body], limit: int | None) -> tuple[NDArray[int64], bool]:
@@ -148,10 +172,3 @@ def _show(record: Record, common: CommonOptions) -> None:
     emit(record, collide_tables, common, bare=collide_bare)
     if not (result.get("pairs_complete", True) or common.quiet):
         note(f"note: {len(result['pairs'])} pairs are listed, more exist; raise --limit")
-
-
-def _exit_code(status: str, *, asked: bool) -> int:
-    """Return the exit code of an answer."""
-    if status == "unresolved":
-        return ExitCode.UNRESOLVED
-    return ExitCode.CONTACT if asked and status != "separated" else ExitCode.ANSWERED

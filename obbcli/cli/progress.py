@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
+import time
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from rich.progress import Progress
+
 # Smaller meshes are done before a bar could be read; drawing one would only slow them down.
 WORTH_A_BAR = 300_000
+# s; a question that is answered sooner shows no bar.
+PATIENCE = 1.0
 
 
 @contextmanager
@@ -27,18 +32,55 @@ def bar(
     Yields:
         a function that takes the share done, 0 to 1; None where no bar is drawn.
     """
-    if not wanted or triangle_count < WORTH_A_BAR or sys.stderr is None or not sys.stderr.isatty():
+    if triangle_count < WORTH_A_BAR or not (wanted and _is_terminal()):
         yield None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True, markup=False, emoji=False)
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as progress:
+    with _progress() as progress:
         task = progress.add_task(title, total=None)
 
         def move(share: float) -> None:
             progress.update(task, total=1.0, completed=share)
 
         yield move
+
+
+@contextmanager
+def proving(duration: float, *, wanted: bool) -> Iterator[Callable[[float], None]]:
+    """Give what shows up to when separation is proven, drawn once the body has run for a second.
+
+    Args:
+        duration: s, what is asked about.
+        wanted: False draws nothing.
+
+    Yields:
+        a function that takes the time proven so far, s.
+    """
+    due = time.monotonic() + PATIENCE
+    is_drawn = wanted and _is_terminal()
+    bars: list[Progress] = []
+    with ExitStack() as stack:
+
+        def show(proven: float) -> None:
+            if not is_drawn or time.monotonic() < due:
+                return
+            if not bars:
+                bars.append(stack.enter_context(_progress()))
+                bars[0].add_task("", total=duration)
+            text = f"no contact before t = {proven:.6g} of {duration:g} s"
+            bars[0].update(bars[0].task_ids[0], description=text, completed=proven)
+
+        yield show
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _progress() -> Progress:
+    """Return rich's progress display, on stderr, gone when it is done."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True, markup=False, emoji=False)
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=console, transient=True)

@@ -14,7 +14,7 @@ from obbcli.cli.options import Finite, gathered, option, vector
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from obbcli.cli.inputs import Input
     from obbcli.cli.options import Decorator
@@ -79,7 +79,18 @@ class MotionOptions(NamedTuple):
     duration: float | None
 
     def motions(self, *, degrees: bool) -> tuple[Motion, Motion]:
-        """Return the motions of A and B."""
+        """Return the motions of A and B.
+
+        Raises:
+            UsageError: a pivot of a body that is not told to turn.
+        """
+        for suffix, pivot, omega in (
+            ("", self.pivot, self.omega),
+            ("-b", self.pivot_b, self.omega_b),
+        ):
+            if pivot is not None and omega is None:
+                remedy = f"add --omega{suffix}, or leave it out"
+                raise UsageError(f"--pivot{suffix}", "is where an axis of rotation passes", remedy)
         return (
             self._motion(self.vel, self.omega, self.pivot, degrees),
             self._motion(self.vel_b, self.omega_b, self.pivot_b, degrees),
@@ -230,6 +241,12 @@ accuracy_options = gathered(
 )
 
 
+def _names(options: PoseOptions | MotionOptions) -> list[str]:
+    """Return the options that were given values."""
+    values = options._asdict().items()
+    return [f"--{name.replace('_', '-')}" for name, value in values if value not in (None, False)]
+
+
 class Question(NamedTuple):
     """What is asked about two bodies, all of it understood and checked before a file is read."""
 
@@ -237,16 +254,18 @@ class Question(NamedTuple):
     motions: tuple[Motion, Motion]
     duration: float | None
     accuracy: Accuracy
+    given: Mapping[str, Sequence[str]]
 
     @classmethod
     def of(cls, pose: PoseOptions, motion: MotionOptions, accuracy: AccuracyOptions) -> Question:
-        """Return the question that options ask.
+        """Return the question that options ask; `given` names the options of pose and motion.
 
         Raises:
             UsageError: a number is refused, or an option has no meaning with the others.
         """
         motions = motion.motions(degrees=pose.degrees)
-        return cls(pose.poses(), motions, motion.duration, accuracy.accuracy())
+        given = {"pose": _names(pose), "motion": _names(motion)}
+        return cls(pose.poses(), motions, motion.duration, accuracy.accuracy(), given)
 
     @property
     def moves(self) -> bool:

@@ -66,20 +66,17 @@ def collide_record(
 
 def collide_tables(record: Record) -> list[Table]:
     """Return the tables of a record: the answer, and the pairs where they were asked for."""
-    result, stats = record["result"], record["stats"]
+    result = record["result"]
     rows = [
-        *(_source_row(name.upper(), record["inputs"][name]) for name in ("a", "b")),
+        *source_rows(record),
         ("status", result["status"]),
         ("answer", _SENTENCES[result["status"]] + _reservation(result)),
     ]
     if result["witness"] is not None:
         of_a, of_b = result["witness"]
-        rows.append(("witness", f"triangle {of_a} of A meets triangle {of_b} of B"))
-    rows.append(("box tests", count(stats["box_tests"])))
-    rows.append(("triangle tests", _triangle_tests(stats)))
-    rows.append(("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"))
-    rows.append(("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())))
-    tables = [Table(rows)]
+        meets = "is within the clearance of" if record["accuracy"]["clearance"] else "meets"
+        rows.append(("witness", f"triangle {of_a} of A {meets} triangle {of_b} of B"))
+    tables = [Table([*rows, *cost_rows(record["stats"])])]
     if "pairs" in result:
         tables.append(_pairs_table(result))
     return tables
@@ -93,8 +90,23 @@ def collide_bare(record: Record) -> str:
     return f"{result['status']}\n"
 
 
-def _source_row(name: str, source: Record) -> tuple[str, str]:
-    return name, f"{source['path']} ({count(source['triangle_count'])} triangles)"
+def source_rows(record: Record) -> list[tuple[str, str]]:
+    """Return the rows that name A and B."""
+    inputs = record["inputs"].items()
+    return [
+        (name.upper(), f"{source['path']} ({count(source['triangle_count'])} triangles)")
+        for name, source in inputs
+    ]
+
+
+def cost_rows(stats: Record) -> list[tuple[str, str]]:
+    """Return the rows that say what a question cost."""
+    return [
+        ("box tests", count(stats["box_tests"])),
+        ("triangle tests", _triangle_tests(stats)),
+        ("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"),
+        ("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())),
+    ]
 
 
 def _reservation(result: Record) -> str:

@@ -12,7 +12,7 @@ from obbcli import MeshError, MotionError, ObbError, SceneError, TreeFileError, 
 from obbcli.cli import app, main
 from obbcli.cli.boundary import ExitCode, OutputError, UsageError, guarded
 
-COMMANDS = ("collide", "build", "info")
+COMMANDS = ("collide", "first-contact", "build", "info")
 
 
 def fail(fault: BaseException) -> None:

@@ -12,15 +12,10 @@ from obbcli import Accuracy
 @pytest.mark.parametrize(
     "words",
     [
-        ("--vel", "1", "0", "0"),
-        ("--vel-b", "-1", "0", "0"),
-        ("--omega", "0", "0", "1e-9"),
-        ("--omega-b", "0", "0", "1", "--pivot-b", "1", "2", "3"),
-        ("--vel", "1", "0", "0", "--duration", "2"),
         ("--solid",),
         ("--method", "sampled"),
         ("--method", "sampled", "--steps", "10", "--integrator", "rk4"),
-        ("--clearance", "0.5"),
+        ("--vel", "1", "0", "0", "--solid"),
     ],
 )
 def test_collide_never_ignores_what_it_cannot_answer_yet(here, obbtree, words):
@@ -37,6 +32,22 @@ def test_collide_answers_a_moving_body_at_its_start(here, obbtree):
 
     assert ended.json["result"]["status"] == "overlap_at_start"
     assert ended.json["motion"]["a"]["linear_velocity"] == [1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--vel", "1", "0", "0"),
+        ("--omega-b", "0", "0", "1"),
+    ],
+)
+def test_collide_lists_no_pairs_of_a_moving_body(here, obbtree, words):
+    moving = obbtree("collide", "cube.stl", "touching.obj", "--all-pairs", *words)
+    at_start = obbtree("collide", "cube.stl", "touching.obj", "--all-pairs", *words,
+                       "--duration", 0)  # fmt: skip
+
+    assert (moving.code, at_start.code) == (2, 0)
+    assert "bodies at rest" in moving.err
 
 
 def test_collide_answers_motions_of_zero(here, obbtree):
@@ -67,7 +78,12 @@ def test_collide_answers_motions_of_zero(here, obbtree):
         (("--leaves", "none"), "'none' is not one of"),
         (("--limit", "5"), "add --all-pairs"),
         (("--all-pairs", "--limit", "0"), "0 is not in the range"),
-        (("--all-pairs", "--max-depth", "3"), "is always exact"),
+        (("--all-pairs", "--max-depth", "3"), "always exactly"),
+        (("--all-pairs", "--timeout", "3"), "cut the list with --limit"),
+        (("--all-pairs", "--max-iterations", "3"), "cut the list with --limit"),
+        (("--pivot", "0", "0", "0"), "--pivot: is where an axis of rotation passes; add --omega"),
+        (("--omega", "0", "0", "1", "--pivot-b", "0", "0", "0"), "add --omega-b"),
+        (("--translate", "1e308", "0", "0"), "error: --translate: posed coordinates"),
         (("--nonsense",), "No such option"),
         (("extra.stl",), "unexpected extra argument"),
     ],

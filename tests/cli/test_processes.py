@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
 import resource
 import subprocess
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 RUN = "import sys; from obbcli.cli import main; sys.exit(main(sys.argv[1:]))"
 # A real signal, sent between two slices of the build.
@@ -32,6 +33,25 @@ class Builder:
 kernels_builder, kernels.TreeBuilder = kernels.TreeBuilder, Builder
 sys.exit(main(sys.argv[1:]))
 """
+
+# The same between two slices of a question, the second of which has something proven to tell.
+INTERRUPTED_QUERY = """
+import signal, sys
+from obbcli import contact
+from obbcli.cli import main
+
+advance = contact.Query.advance
+
+def interrupted(self, *arguments):
+    if self.lower_bound > 0:
+        signal.raise_signal(signal.SIGINT)
+    return advance(self, *arguments)
+
+contact.Query.advance = interrupted
+sys.exit(main(sys.argv[1:]))
+"""
+SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
+GEARS = (str(SAMPLES / "gear.stl"), str(SAMPLES / "pinion.stl"))
 
 
 def run(code: str, words: Sequence[str], **options: object) -> subprocess.CompletedProcess[str]:
@@ -88,6 +108,21 @@ def test_interrupted_build_says_so_in_one_line_and_leaves_nothing(here: Path):
     assert ended.stdout == ""
     assert ended.stderr == "error: interrupted; nothing was left half written\n"
     assert set(here.iterdir()) == before
+
+
+@pytest.mark.parametrize("command", ["collide", "first-contact"])
+def test_interrupted_question_says_what_is_proven(command):
+    words = [command, *GEARS, "--omega", "0", "0", "3", "--omega-b", "0", "0", "-6"]
+
+    ended = run(INTERRUPTED_QUERY, [*words, "--duration", "2"], stdout=subprocess.PIPE)
+
+    told = re.fullmatch(
+        r"error: interrupted; no contact before t = (\S+) of 2 s: proven\n", ended.stderr
+    )
+    assert ended.returncode == 130
+    assert ended.stdout == ""
+    assert told is not None
+    assert 0 < float(told[1]) < 2
 
 
 @pytest.mark.parametrize(

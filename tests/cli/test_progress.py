@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from contextlib import redirect_stderr
+from pathlib import Path
 
 import pytest
 
@@ -69,3 +70,48 @@ def test_commands_draw_a_bar_unless_told_not_to(
         obbtree(command, *files, *words)
 
     assert ("cube.stl" in terminal.getvalue()) == is_drawn
+
+
+GEARS = [
+    str(Path(__file__).resolve().parents[2] / f"sample_meshes/{n}.stl") for n in ("gear", "pinion")
+]
+TURNING = ("--omega", "0", "0", "3", "--omega-b", "0", "0", "-5.9", "--duration", "2")
+
+
+@pytest.mark.parametrize(
+    ("words", "is_drawn"), [((), True), (("--quiet",), False), (("--no-progress",), False)]
+)
+@pytest.mark.parametrize("command", ["collide", "first-contact"])
+def test_long_question_shows_the_time_proven_so_far(monkeypatch, obbtree, command, words, is_drawn):
+    monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
+    monkeypatch.setattr("obbcli.question.POPS_A_SLICE", 1024)
+
+    with redirect_stderr(Terminal()) as terminal:
+        ended = obbtree(command, *GEARS, *TURNING, *words)
+
+    assert ended.code == 0
+    assert ("no contact before t = " in terminal.getvalue()) == is_drawn
+    assert ("of 2 s" in terminal.getvalue()) == is_drawn
+
+
+def test_short_question_shows_no_bar(monkeypatch, obbtree):
+    monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 3600.0)
+
+    with redirect_stderr(Terminal()) as terminal:
+        obbtree("first-contact", *GEARS, *TURNING)
+
+    assert terminal.getvalue() == ""
+
+
+def test_bar_changes_no_answer(monkeypatch, obbtree):
+    monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
+    monkeypatch.setattr("obbcli.question.POPS_A_SLICE", 1024)
+    plain = obbtree("first-contact", *GEARS, *TURNING, "--json", "--max-iterations", 9_000).json
+
+    with redirect_stderr(Terminal()):
+        watched = obbtree(
+            "first-contact", *GEARS, *TURNING, "--json", "--max-iterations", 9_000
+        ).json
+
+    assert plain["result"]["status"] == "unresolved"
+    assert watched["result"] == plain["result"]

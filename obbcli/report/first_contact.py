@@ -1,0 +1,93 @@
+"""The record of `obbtree first-contact` and its table."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING
+
+from obbcli.report.collide import cost_rows, source_rows
+from obbcli.report.record import document, stats_part
+from obbcli.report.table import Table, length, point
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.report.record import Record, Source
+    from obbcli.results import FirstContact
+
+_AT_HI = {
+    "intersecting": "the triangles intersect",
+    "within_tolerance": "the points are at most {} apart",
+}
+
+
+def first_contact_record(
+    sources: Sequence[Source], motion: Record, accuracy: Accuracy, answer: FirstContact
+) -> Record:
+    """Return the record of a question.
+
+    Args:
+        sources: the files of A and B.
+        motion: as `motion_part` gives it.
+        accuracy: as used.
+        answer: what came out; its fields become the result, but for the stats.
+    """
+    values = {field.name: getattr(answer, field.name) for field in fields(answer)}
+    stats = values.pop("stats")
+    return document(
+        "first-contact",
+        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
+        motion=motion,
+        accuracy=accuracy.as_dict(),
+        result=values | {"status": answer.status.value},
+        stats=stats_part(stats),
+    )
+
+
+def first_contact_tables(record: Record) -> list[Table]:
+    """Return the table of a record."""
+    result = record["result"]
+    rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(result))]
+    if result["point"] is not None:
+        rows.append(("point", point(result["point"])))
+    if result["normal"] is not None:
+        rows.append(("normal", f"{point(result['normal'])} (from A to B)"))
+    if result["triangle_a"] is not None:
+        a, b = result["triangle_a"], result["triangle_b"]
+        rows.append(("triangles", f"{a} of A and {b} of B ({result['feature']})"))
+    return [Table([*rows[:4], *_bracket(result), *rows[4:], *cost_rows(record["stats"])])]
+
+
+def first_contact_bare(record: Record) -> str:
+    """Return the status word and, where there is one, the time."""
+    result = record["result"]
+    return (
+        " ".join([result["status"], *([] if result["time"] is None else [repr(result["time"])])])
+        + "\n"
+    )
+
+
+def _sentence(result: Record) -> str:
+    time = result["time"]
+    if result["status"] == "separated":
+        return "no contact in the whole duration"
+    if result["status"] == "unresolved":
+        return f"a limit was reached; no contact before t = {time!r} s"
+    if not result["approximate"]:
+        return "in contact at t = 0" if time == 0 else f"first contact at t = {time!r} s"
+    bound = f"the surfaces are at most {length(result['error_bound'])} apart"
+    if time == 0:
+        return f"in contact at t = 0 of boxes: {bound}"
+    return f"first contact of boxes at t = {time!r} s: none before, and then {bound}"
+
+
+def _bracket(result: Record) -> list[tuple[str, str]]:
+    """Return what is proven of the time, where it has two ends."""
+    low, high = result["time_bounds"] or (None, None)
+    if high is None or high == 0:
+        return []
+    at_high = _AT_HI[result["evidence"]].format(length(result["distance"]))
+    if low == high:
+        return [("bracket", f"no contact before; at that time {at_high}")]
+    return [("bracket", f"no contact before; {high - low:.2g} s later {at_high}")]
