@@ -210,10 +210,7 @@ def test_pair_limit_below_one_is_refused(limit: int) -> None:
 @pytest.mark.parametrize(
     ("where", "question"),
     [
-        ("a moving body", {"a": Motion(linear_velocity=(1, 0, 0))}),
-        ("a moving body", {"b": Motion(angular_velocity=(0, 0, 1)), "duration": 2.0}),
         ("solid=True", {"solid": True}),
-        ("clearance > 0", {"accuracy": Accuracy(clearance=0.1)}),
         ("method='sampled'", {"accuracy": Accuracy(method="sampled")}),
         ("duration", {"duration": -1.0}),
         ("duration", {"duration": float("nan")}),

@@ -81,8 +81,8 @@ template <std::size_t K>
     }
     const Leading n = leading(value.numerator);
     const Leading d = leading(value.denominator);
-    // Below the true quotient by a few units of at least 62 bits, so that what is rounded down to 53
-    // bits has them all: the next power of two may lie between.
+    // Below the true quotient by a few units of at least 62 bits, so that what is rounded down to
+    // 53 bits has them all: the next power of two may lie between.
     const auto quotient = static_cast<std::uint64_t>((Uint128{n.bits} << 63) / d.bits) - 8;
     const int quotient_exponent = n.exponent - d.exponent - 63;
     // Keep 53 bits, or as many as a subnormal has.
@@ -102,7 +102,8 @@ template <std::size_t K>
         return std::ldexp(static_cast<double>(m), unit + exponent);
     };
     const bool is_double = compare(value, mantissa, unit) == 0;
-    return {result(mantissa + (up ? 1 : 0)), result(mantissa), result(mantissa + (is_double ? 0 : 1))};
+    return {result(mantissa + (up ? 1 : 0)), result(mantissa),
+            result(mantissa + (is_double ? 0 : 1))};
 }
 
 // The vector divided by some power of two, each component cut to 62 bits of the largest's scale.
