@@ -67,7 +67,11 @@ nb::object column(const std::vector<obb::PairContact>& contacts, const Get& get)
     std::vector<Value> values;
     values.reserve(contacts.size());
     for (const obb::PairContact& contact : contacts) {
-        values.push_back(get(contact));
+        if constexpr (std::is_same_v<Value, obb::Vec3>) {
+            values.push_back(get(contact) + obb::Vec3{0, 0, 0}); // no negative zeros
+        } else {
+            values.push_back(get(contact));
+        }
     }
     if constexpr (std::is_same_v<Value, double>) {
         return nb::cast(owned<Owned<double, -1>>(std::move(values), {contacts.size()}));

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+    Columns = Mapping[str, NDArray[Any]]
 
 # In the order of the kernels' AxisKind, with how many indices each kind has.
 _AXES = (
@@ -29,6 +30,7 @@ _AXES = (
 )
 _KINDS = np.array([name for name, _ in _AXES])
 _PARTS = ("vertex", "edge", "face")
+_NORMALS = ("normal", "normal_a", "normal_b", "smooth_normal_a", "smooth_normal_b")
 _FEATURES = np.array([*(f"{a}-{b}" for a in _PARTS for b in _PARTS), ""])
 
 
@@ -126,48 +128,44 @@ class PrimitiveContacts:
     smooth_normal_b: Floats
     axis_kind: NDArray[np.str_]
     feature: NDArray[np.str_]
-    _codes: NDArray[np.int8]
+    _columns: Columns
 
     def __len__(self) -> int:
         return len(self.rows)
 
     def __getitem__(self, k: int) -> PrimitiveContact:
         """Return the k-th contact."""
-        kind, *ab, side = (int(code) for code in self._codes[k, :4])
-        name, places = _AXES[kind]
-        axis = SeparatingAxis(name, tuple(ab[i] for i in places), side) if kind else None
-        return PrimitiveContact(
-            time=float(self.time[k]),
-            time_below=float(self.time_below[k]),
-            last_time=float(self.last_time[k]),
-            ends=bool(self.ends[k]),
-            point=self.point[k],
-            separating_axis=axis,
-            normal=_unless_zero(self.normal[k]),
-            feature=str(self.feature[k]) or None,
-            normal_a=_unless_zero(self.normal_a[k]),
-            normal_b=_unless_zero(self.normal_b[k]),
-            smooth_normal_a=_unless_zero(self.smooth_normal_a[k]),
-            smooth_normal_b=_unless_zero(self.smooth_normal_b[k]),
-        )
+        return contact_at(self._columns, k)
 
 
-def contacts_of(columns: Mapping[str, NDArray[np.generic]]) -> PrimitiveContacts:
+def contact_at(columns: Columns, k: int) -> PrimitiveContact:
+    """Return the k-th contact of the kernel's columns."""
+    kind, first, second, side, part_a, part_b, ends = columns["codes"][k].tolist()
+    name, places = _AXES[kind]
+    indices = (first, second)
+    axis = SeparatingAxis(name, tuple(indices[i] for i in places), side) if kind else None
+    return PrimitiveContact(
+        time=float(columns["time"][k]),
+        time_below=float(columns["time_below"][k]),
+        last_time=float(columns["last_time"][k]),
+        ends=bool(ends),
+        point=columns["point"][k],
+        separating_axis=axis,
+        feature=f"{_PARTS[part_a]}-{_PARTS[part_b]}" if kind else None,
+        **{name: v if (v := columns[name][k]).any() else None for name in _NORMALS},
+    )
+
+
+def contacts_of(columns: Columns) -> PrimitiveContacts:
     """Return the kernel's columns as contacts."""
-    codes = np.asarray(columns["codes"], dtype=np.int8)
+    codes = columns["codes"]
     features = np.where(codes[:, 0] > 0, 3 * codes[:, 4] + codes[:, 5], len(_FEATURES) - 1)
-    fields: dict[str, NDArray[np.generic]] = {
-        # Adding zero takes the sign from negative zeros.
-        **{name: values + 0 for name, values in columns.items() if name != "codes"},
+    derived = {
         "ends": codes[:, 6].astype(np.bool_),
         "axis_kind": _KINDS[codes[:, 0]],
         "feature": _FEATURES[features],
-        "_codes": codes,
     }
-    for column in fields.values():
+    for column in derived.values():
         column.setflags(write=False)
-    return PrimitiveContacts(**fields)  # type: ignore[arg-type]
-
-
-def _unless_zero(vector: Floats) -> Floats | None:
-    return vector if vector.any() else None
+    plain = {name: column for name, column in columns.items() if name != "codes"}
+    return PrimitiveContacts(**plain, **derived, _columns=columns)

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-import math
 import os
+import sys
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from obbcli import kernels
 from obbcli.errors import MotionError, ObbError
-from obbcli.primitives.contacts import PrimitiveContact, PrimitiveContacts, contacts_of
+from obbcli.primitives.contacts import (
+    PrimitiveContact,
+    PrimitiveContacts,
+    contact_at,
+    contacts_of,
+)
 from obbcli.primitives.shapes import Obb, Triangle, as_one_or_many, first_row
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
@@ -67,7 +74,8 @@ def intersects(
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
     verdicts = np.empty(pairs.pair_count, dtype=np.uint8)
     kernels.primitive_intersects(*pairs[:5], _thread_count(threads), verdicts)
-    return bool(verdicts[0]) if pairs.is_single else verdicts.view(np.bool_)
+    # Bit 0 of a verdict; bit 1 tells how it was found.
+    return bool(verdicts[0] & 1) if pairs.is_single else (verdicts & 1).view(np.bool_)
 
 
 def first_contact(
@@ -104,18 +112,17 @@ def first_contact(
     """
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
     columns = kernels.primitive_first_contacts(*pairs[:6], _thread_count(threads))
-    contacts = contacts_of(columns)
-    lost = ~np.isfinite(contacts.point).all(axis=1)
+    lost = ~np.isfinite(columns["point"]).all(axis=1)
     if lost.any():
-        row = int(contacts.rows[np.argmax(lost)])
+        row = int(columns["rows"][np.argmax(lost)])
         raise MotionError(
             "velocity_a" if pairs.is_single else f"velocity_a[{row}]",
             "takes the contact out of the range of doubles",
             "subtract the velocity that both shapes have in common",
         )
     if pairs.is_single:
-        return contacts[0] if len(contacts) else None
-    return contacts
+        return contact_at(columns, 0) if len(lost) else None
+    return contacts_of(columns)
 
 
 def _pairs_of(
@@ -131,23 +138,35 @@ def _pairs_of(
     rate_a, single_rate_a = _as_velocity(velocity_a, "velocity_a")
     rate_b, single_rate_b = _as_velocity(velocity_b, "velocity_b")
     durations, single_duration = _as_duration(duration)
-    arrays = (
-        ("shape_a", shape_a.rows, shape_a.is_single),
-        ("shape_b", shape_b.rows, shape_b.is_single),
-        ("velocity_a", rate_a, single_rate_a),
-        ("velocity_b", rate_b, single_rate_b),
-        ("duration", durations, single_duration),
+    rows = (shape_a.rows, shape_b.rows, rate_a, rate_b, durations)
+    singles = (
+        shape_a.is_single,
+        shape_b.is_single,
+        single_rate_a,
+        single_rate_b,
+        single_duration,
     )
-    many = [(name, len(rows)) for name, rows, single in arrays if not single]
+    if all(singles):
+        return _Pairs(*rows, pair_count=1, is_single=True)
+    return _Pairs(*rows, pair_count=_common_length(rows, singles), is_single=False)
+
+
+def _common_length(rows: Iterable[Floats], singles: Iterable[bool]) -> int:
+    names = ("shape_a", "shape_b", "velocity_a", "velocity_b", "duration")
+    many = [
+        (name, len(array))
+        for name, array, single in zip(names, rows, singles, strict=True)
+        if not single
+    ]
+    first, count = many[0]
     for name, length in many[1:]:
-        if length != many[0][1]:
+        if length != count:
             raise ObbError(
                 name,
-                f"has {length} rows, but {many[0][0]} has {many[0][1]}",
+                f"has {length} rows, but {first} has {count}",
                 "give one for all pairs, or one for each",
             )
-    count = many[0][1] if many else 1
-    return _Pairs(shape_a.rows, shape_b.rows, rate_a, rate_b, durations, count, not many)
+    return count
 
 
 def _as_velocity(value: ArrayLike, name: str) -> tuple[Floats, bool]:
@@ -157,13 +176,15 @@ def _as_velocity(value: ArrayLike, name: str) -> tuple[Floats, bool]:
 
 
 def _as_duration(value: ArrayLike) -> tuple[Floats, bool]:
-    if isinstance(value, (int, float)) and not math.isfinite(value):
-        raise MotionError("duration", f"is {value}", "a duration must be finite")
+    if isinstance(value, (int, float)):
+        if not 0 <= value <= sys.float_info.max:
+            raise MotionError("duration", f"is {value}", "a duration is finite and at least 0")
+        return np.array([value], dtype=np.float64), True
     durations, single = as_one_or_many(value, (), "duration", MotionError)
     negative = durations < 0
     if negative.any():
         where, row = first_row(negative, "duration", single=single)
-        raise MotionError(where, f"is {durations[row]}", "a duration must be at least 0")
+        raise MotionError(where, f"is {durations[row]}", "a duration is finite and at least 0")
     return durations, single
 
 
