@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 import sys
 import time
 from pathlib import Path
@@ -20,18 +19,6 @@ if TYPE_CHECKING:
 
 STDIN = "-"
 _STDIN_NAME = "<stdin>"
-
-# How a format shows itself in its first bytes; what none of them fits is read as STL.
-_SIGNATURES = (
-    (re.compile(rb"glTF"), ".glb"),
-    (re.compile(rb"ply\s"), ".ply"),
-    (re.compile(rb"(ST)?C?N?4?n?OFF\b"), ".off"),
-    (re.compile(rb"# vtk "), ".vtk"),
-    (re.compile(rb"\s*(<\?xml[^>]*>\s*)?<VTKFile"), ".vtu"),
-    (re.compile(rb"\$MeshFormat"), ".msh"),
-    (re.compile(rb"(\s*#[^\n]*\n|\s)*(v|vt|vn|o|g|s|mtllib|usemtl)[ \t]"), ".obj"),
-)
-_HEAD_BYTES = 1 << 16
 
 
 class Input(NamedTuple):
@@ -105,38 +92,46 @@ def read_shape(name: str, *, verify: bool) -> tuple[Mesh | ObbTree, str | None]:
         TreeFileError: the tree file is damaged.
         OSError: the file cannot be read.
     """
-    from obbcli.mesh import load_mesh, load_mesh_bytes
+    from obbcli.mesh import check_file, load_mesh
     from obbcli.tree import ObbTree
 
-    data = _read_stdin() if name == STDIN else None
-    if _is_tree(name, data):
-        if data is None:
-            return ObbTree.open(name, verify=verify), None
-        tree = ObbTree.from_bytes(data, _STDIN_NAME, verify=verify)
-        return tree, hashlib.sha256(data).hexdigest()
-    if data is None:
-        mesh = load_mesh(name)
-    else:
-        mesh = load_mesh_bytes(data, _suffix(data), name=_STDIN_NAME)
+    if name == STDIN:
+        return _from_bytes(_read_stdin(), None, _STDIN_NAME, verify=verify)
+    path = Path(name)
+    check_file(path)
+    if path.is_fifo():
+        return _from_bytes(path.read_bytes(), path.suffix, name, verify=verify)
+    if _is_tree(path):
+        return ObbTree.open(name, verify=verify), None
+    mesh = load_mesh(name)
     return mesh, mesh.sha256
 
 
-def _is_tree(name: str, data: bytes | None) -> bool:
-    """Return whether an input is a tree, told by its first bytes or by its name's suffix."""
+def _from_bytes(
+    data: bytes, suffix: str | None, name: str, *, verify: bool
+) -> tuple[Mesh | ObbTree, str | None]:
+    """Return what a stream held: the suffix of its name tells where it is known, else its bytes."""
+    from obbcli.mesh import known_suffixes, load_mesh_bytes
+    from obbcli.tree import ObbTree
+    from obbcli.treefile import is_tree_file
+
+    if is_tree_file(data):
+        return ObbTree.from_bytes(data, name, verify=verify), hashlib.sha256(data).hexdigest()
+    is_known = suffix is not None and suffix.lower() in known_suffixes()
+    mesh = load_mesh_bytes(data, suffix if is_known else None, name=name)
+    return mesh, mesh.sha256
+
+
+def _is_tree(path: Path) -> bool:
+    """Return whether a file is a tree, told by its name's suffix or by its first bytes."""
     from obbcli.treefile import MAGIC, is_tree_file
 
-    if data is not None:
-        return is_tree_file(data)
-    path = Path(name)
     if path.suffix.lower() == ".obbt":
         return True
     try:
-        # A pipe must not be opened to look: what is read once is gone.
-        if not path.is_file():
-            return False
         with path.open("rb") as file:
             return is_tree_file(file.read(len(MAGIC)))
-    except (OSError, ValueError):
+    except OSError:
         # Left to the mesh's reader, who says it better.
         return False
 
@@ -150,12 +145,3 @@ def _read_stdin() -> bytes:
     if sys.stdin is None or sys.stdin.isatty():
         raise MeshError(_STDIN_NAME, "is no file or pipe", "pipe a mesh into it, or name a file")
     return sys.stdin.buffer.read()
-
-
-def _suffix(data: bytes) -> str:
-    """Return the suffix of the format that the first bytes show."""
-    head = data[:_HEAD_BYTES]
-    # A binary STL may begin with any text: its length tells it.
-    if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
-        return ".stl"
-    return next((suffix for signature, suffix in _SIGNATURES if signature.match(head)), ".stl")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from obbcli.errors import MeshError
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import Source, checked_source, digest_of, read_source
-from obbcli.mesh.stl import is_binary_stl
+from obbcli.mesh.sniff import beginning
+from obbcli.mesh.source import Source, check_file, checked_source, digest_of, read_source
 
 if TYPE_CHECKING:
     import os
@@ -73,21 +73,6 @@ _FORMATS = {
     ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
 }
 
-#: How files begin, with the suffix they should have (None: not read) and what they are.
-_BEGINNINGS: tuple[tuple[bytes, str | None, str], ...] = (
-    (b"ply", ".ply", "a PLY file"),
-    (b"gltf", ".glb", "a GLB file"),
-    (b"solid", ".stl", "an ASCII STL file"),
-    (b"off", ".off", "an OFF file"),
-    (b"# vtk datafile", ".vtk", "a VTK file"),
-    (b"$meshformat", ".msh", "a Gmsh file"),
-    (b"<vtkfile", ".vtu", "a VTU file"),
-    (b"pk\x03\x04", None, "a zip archive, which is not opened"),
-    (b"\x1f\x8b", None, "a gzip archive, which is not opened"),
-    (b"\x89hdf", None, "an HDF5 file, which is not read"),
-    (b"iso-10303", None, "a STEP file, which is no mesh"),
-)
-
 
 def known_suffixes() -> tuple[str, ...]:
     """Return the suffixes that can be read, sorted."""
@@ -104,6 +89,8 @@ def load_mesh(path: str | os.PathLike[str]) -> Mesh:
         MeshError: it cannot be read, is not what its name says, or holds no usable surface.
     """
     path = Path(path)
+    # Before the suffix: of a file that is not there nothing else is worth saying.
+    check_file(path)
     read = _reader(str(path), path.suffix)
     return _load(read_source(path), path.suffix, read)
 
@@ -111,25 +98,20 @@ def load_mesh(path: str | os.PathLike[str]) -> Mesh:
 def load_mesh_bytes(data: bytes, suffix: str | None = None, *, name: str = "<stdin>") -> Mesh:
     """Return the mesh in `data`, which is what a file with `suffix` would hold.
 
-    Without a suffix the beginning must say what it is: STL, PLY, OFF, GLB, VTK, VTU and Gmsh do.
+    Without a suffix the beginning must say what it is: STL, OBJ, PLY, OFF, GLB, VTK, VTU and Gmsh
+    do.
 
     Raises:
         MeshError: as in `load_mesh`; `name` is the place named.
     """
     source = checked_source(Source(name, name, bytes(data)))
     if suffix is None:
-        found = _beginning(source.data)
-        suffix = ".stl" if is_binary_stl(source.data) else found[0] if found else None
+        found = beginning(source.data)
+        suffix = found[0] if found else None
         if suffix is None:
             fault = f"is {found[1]}" if found else "does not begin as any known format does"
             raise source.error(fault, "put it into a file whose suffix tells its format")
     return _load(source, suffix, _reader(name, suffix))
-
-
-def _beginning(data: bytes) -> tuple[str | None, str] | None:
-    """Return suffix and description of the format that the first bytes tell of, if any."""
-    start = data[:256].lstrip().lower()
-    return next(((form[1], form[2]) for form in _BEGINNINGS if start.startswith(form[0])), None)
 
 
 def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
@@ -171,7 +153,7 @@ def _load(source: Source, suffix: str, read: Callable[[Source], MeshArrays]) -> 
 
 def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
     """Return the error, with what the file seems to be where that is not what its name says."""
-    found = _beginning(source.data)
+    found = beginning(source.data)
     if found is None or found[0] == suffix.lower():
         return fault
     expected = f" ({found[0]})" if found[0] else ""

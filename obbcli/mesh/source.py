@@ -5,13 +5,14 @@ from __future__ import annotations
 import hashlib
 import stat
 import threading
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from obbcli.errors import MeshError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     import numpy as np
@@ -48,20 +49,40 @@ class Source:
         return MeshError(where, fault, remedy)
 
 
+def check_file(path: Path) -> None:
+    """Refuse what is no file or pipe, without reading it.
+
+    Raises:
+        MeshError: it does not exist, is no file, or may not be looked at.
+    """
+    with _naming(path):
+        kind = path.stat().st_mode
+        if stat.S_ISDIR(kind):
+            raise MeshError(str(path), "is a directory, expected a file", "name one file in it")
+        if not (stat.S_ISREG(kind) or stat.S_ISFIFO(kind)):
+            raise MeshError(str(path), "is a device or socket, expected a file")
+
+
 def read_source(path: Path) -> Source:
     """Return the contents of a file, or of a pipe.
 
     Raises:
         MeshError: it does not exist, is no file, may not be read, or is empty.
     """
+    check_file(path)
+    with _naming(path):
+        data = path.read_bytes()
+    return checked_source(Source(str(path), path.name, data, path))
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Turn the system's refusals into errors that name the file."""
     place = str(path)
     try:
-        kind = path.stat().st_mode
-        if stat.S_ISDIR(kind):
-            raise MeshError(place, "is a directory, expected a mesh file", "name one file in it")
-        if not (stat.S_ISREG(kind) or stat.S_ISFIFO(kind)):
-            raise MeshError(place, "is a device or socket, expected a mesh file")
-        data = path.read_bytes()
+        yield
+    except MeshError:
+        raise
     except FileNotFoundError as fault:
         raise MeshError(place, "no such file", "check the path") from fault
     except PermissionError as fault:
@@ -71,12 +92,9 @@ def read_source(path: Path) -> Source:
     except (OSError, ValueError) as fault:
         # ValueError: a path that holds a NUL. OSError: too long a name, a failing disk, ...
         reason = getattr(fault, "strerror", None) or str(fault)
-        if isinstance(fault, MeshError):
-            raise
         raise MeshError(place, f"cannot be read: {reason}") from fault
     except MemoryError as fault:
         raise MeshError(place, "does not fit into memory") from fault
-    return checked_source(Source(place, path.name, data, path))
 
 
 def checked_source(source: Source) -> Source:

@@ -60,9 +60,30 @@ def test_bad_file_is_refused_in_one_line(here, obbtree, command, name):
     assert {path.name for path in here.iterdir()} == before
 
 
+@pytest.mark.parametrize("name", ["gone.stl", "gone", "gone.obbt"])
 @pytest.mark.parametrize("command", COMMANDS)
-def test_missing_file_is_refused(here, obbtree, command):
-    check_refusal(obbtree(*(word.format(bad="gone.stl") for word in COMMANDS[command])), "gone.stl")
+def test_missing_file_is_refused(here, obbtree, command, name):
+    ended = obbtree(*(word.format(bad=name) for word in COMMANDS[command]))
+
+    check_refusal(ended, name)
+    assert ended.err == f"error: {name}: no such file; check the path\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "guess"),
+    [
+        ("cube.obj", GOOD, "looks like a binary STL file (.stl)"),
+        ("cube.ply", obj(cube()).encode(), "looks like an OBJ file (.obj)"),
+        ("named.stl", b"# a comment\n" + obj(cube()).encode(), "looks like an OBJ file (.obj)"),
+    ],
+)
+def test_wrong_name_is_refused_with_a_guess(here, obbtree, name, data, guess):
+    (here / name).write_bytes(data)
+
+    ended = obbtree("info", name)
+
+    check_refusal(ended, name)
+    assert guess in ended.err
 
 
 @pytest.mark.parametrize("name", ["folder", "folder.stl", "folder.obbt"])
@@ -70,7 +91,10 @@ def test_missing_file_is_refused(here, obbtree, command):
 def test_directory_is_refused(here, obbtree, command, name):
     (here / name).mkdir()
 
-    check_refusal(obbtree(*(word.format(bad=name) for word in COMMANDS[command])), name)
+    ended = obbtree(*(word.format(bad=name) for word in COMMANDS[command]))
+
+    check_refusal(ended, name)
+    assert "is a directory" in ended.err
 
 
 @pytest.mark.parametrize("name", ["cube.stl", "cube.obbt"])

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import resource
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -172,3 +174,28 @@ def test_colour_is_left_out_on_request(here: Path):
 
     assert ended.returncode == 0
     assert "\x1b[3" not in ended.stdout
+
+
+@pytest.mark.parametrize("name", ["cube.stl", "touching.obj", "cube.obbt"])
+def test_process_substitution_is_read_by_its_content(here: Path, name):
+    run(RUN, ["build", "cube.stl"], stdout=subprocess.DEVNULL)
+    line = f'"$0" -c "$1" collide touching.obj <(cat {name}) --json -q'
+
+    ended = subprocess.run(
+        ["bash", "-c", line, sys.executable, RUN], capture_output=True, text=True, check=False
+    )
+
+    document = json.loads(ended.stdout)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert document["result"]["status"] == "overlap_at_start"
+    assert document["inputs"]["b"]["sha256"] == sha256((here / name).read_bytes()).hexdigest()
+
+
+def test_named_pipe_is_read_by_its_suffix(here: Path):
+    os.mkfifo(here / "pipe.obj")
+    writer = subprocess.Popen(["cp", "touching.obj", "pipe.obj"])
+
+    ended = run(RUN, ["info", "pipe.obj", "--json"], stdout=subprocess.PIPE)
+
+    assert writer.wait() == 0
+    assert json.loads(ended.stdout)["result"]["triangle_count"] == 12

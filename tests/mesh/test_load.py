@@ -84,7 +84,7 @@ def test_load_mesh_bytes_without_a_suffix_goes_by_the_beginning(data):
 @pytest.mark.parametrize(
     ("data", "fault"),
     [
-        (OBJ, "<stdin>: does not begin as any known format does; put it into a file"),
+        (b"1 2 3\n", "<stdin>: does not begin as any known format does; put it into a file"),
         (b"PK\x03\x04", "<stdin>: is a zip archive, which is not opened"),
         (b"", "<stdin>: is empty"),
     ],
@@ -94,18 +94,20 @@ def test_load_mesh_bytes_without_a_suffix_refuses_what_does_not_say(data, fault)
         load_mesh_bytes(data)
 
 
-def test_load_mesh_refuses_a_missing_file(tmp_path):
-    with pytest.raises(MeshError, match=r"none\.stl: no such file") as caught:
-        load_mesh(tmp_path / "none.stl")
+@pytest.mark.parametrize("name", ["none.stl", "none", "none.xyz"])
+def test_load_mesh_refuses_a_missing_file(tmp_path, name):
+    with pytest.raises(MeshError, match=f"{name}: no such file") as caught:
+        load_mesh(tmp_path / name)
 
     assert isinstance(caught.value.__cause__, FileNotFoundError)
 
 
-def test_load_mesh_refuses_a_directory(tmp_path):
-    (tmp_path / "folder.stl").mkdir()
+@pytest.mark.parametrize("name", ["folder.stl", "folder"])
+def test_load_mesh_refuses_a_directory(tmp_path, name):
+    (tmp_path / name).mkdir()
 
-    with pytest.raises(MeshError, match=r"folder\.stl: is a directory"):
-        load_mesh(tmp_path / "folder.stl")
+    with pytest.raises(MeshError, match=f"{name}: is a directory"):
+        load_mesh(tmp_path / name)
 
 
 def test_load_mesh_refuses_a_device(tmp_path):
