@@ -130,3 +130,15 @@ def test_triangle_that_is_no_number_is_not_separated_from_a_box(tmp_path: Path) 
 
         assert obbcli.collide(damaged, far, accuracy=roots).collides
         assert obbcli.collide(far, damaged, accuracy=roots).collides
+
+
+def test_damaged_tree_of_one_triangle_is_refused_by_every_question(tmp_path: Path) -> None:
+    # Its triangle is read when the question is put, not when it is advanced.
+    damaged = bytearray(file_of(soup(1), tmp_path))
+    struct.pack_into("<I", damaged, FIXED.unpack_from(damaged)[2] + 8, 3)
+    tree = ObbTree.from_bytes(bytes(damaged), verify=False)
+
+    for ask in (obbcli.collide, obbcli.triangle_pairs):
+        for pair in ((tree, Mesh(*soup(2))), (Mesh(*soup(2)), tree)):
+            with pytest.raises(TreeFileError, match="uses a vertex that is not there"):
+                ask(*pair)
