@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
@@ -262,7 +263,6 @@ class ObbTree:
     @cached_property
     def levels(self) -> tuple[Level, ...]:
         """What stands at each depth, the root's first."""
-        # In two steps, since the cube of the unit may leave the range of double.
         cube = 3 * self._arrays.scale_exponent
         try:
             found = self._kernel.levels()
@@ -369,5 +369,8 @@ def _check_memory(mesh: Mesh, max_memory: int | None) -> None:
 
 def _ldexp_or_none(value: float, exponent: int) -> float | None:
     """Return value times 2^exponent, or None where it leaves the range of double."""
-    result = float(np.ldexp(np.ldexp(value, exponent // 2), exponent - exponent // 2))
-    return result if np.isfinite(result) else None
+    try:
+        result = math.ldexp(value, exponent)
+    except OverflowError:
+        return None
+    return result if math.isfinite(result) else None

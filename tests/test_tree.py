@@ -97,6 +97,13 @@ def test_root_volume_of_a_box_is_that_of_the_box() -> None:
             assert root.volume == pytest.approx(105.0, rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["1e300", "largest", "1e-300"])
+def test_levels_beyond_the_range_of_double_say_none_without_a_warning(name: str) -> None:
+    levels = ObbTree.build(Mesh(*NASTY[name]())).levels
+
+    assert (levels[0].volume is None) == (name != "1e-300")
+
+
 def test_turned_flat_box_is_flat() -> None:
     # A sheet turned by a rotation: fitted boxes stay thin to the rounding of a float32 quaternion.
     vertices, faces = soup(200)
