@@ -12,9 +12,7 @@ from __future__ import annotations
 import json
 import os
 import struct
-import tempfile
 import zlib
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from obbcli.errors import TreeFileError
+from obbcli.files import write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -96,21 +95,7 @@ def write_tree(path: str | os.PathLike[str], arrays: TreeArrays) -> int:
     """
     data = b"".join(_padded(_little_endian(array)) for array in _sections(arrays))
     header = _header(arrays, data)
-    target = Path(path)
-    # In the same directory, since only there is a rename atomic.
-    handle, temporary = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(header)
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(target)
-    except BaseException:
-        with suppress(FileNotFoundError):
-            Path(temporary).unlink()
-        raise
+    write_whole(path, header, data)
     return len(header) + len(data)
 
 
@@ -308,10 +293,3 @@ def _aligned_bytes(count: int) -> NDArray[np.uint8]:
     raw = np.empty(count + ALIGNMENT, np.uint8)
     start = -raw.ctypes.data % ALIGNMENT
     return raw[start : start + count]
-
-
-def _umask() -> int:
-    """Return the process's file mode mask, which can only be read by setting it."""
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

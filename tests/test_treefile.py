@@ -160,10 +160,13 @@ def test_saving_to_a_missing_folder_or_over_a_folder_leaves_nothing(tmp_path: Pa
     tree = built(soup(5))
     (tmp_path / "folder").mkdir()
 
-    with pytest.raises(FileNotFoundError):
-        tree.save(tmp_path / "missing" / "tree.obbt")
-    with pytest.raises(IsADirectoryError):
-        tree.save(tmp_path / "folder")
+    for path, error in (
+        (tmp_path / "missing" / "tree.obbt", FileNotFoundError),
+        (tmp_path / "folder", IsADirectoryError),
+    ):
+        with pytest.raises(error) as refused:
+            tree.save(path)
+        assert (refused.value.filename, refused.value.filename2) == (str(path), None)
 
     assert [entry.name for entry in tmp_path.iterdir()] == ["folder"]
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
-import os
 import sys
 from typing import TYPE_CHECKING, TextIO
 
 from obbcli.cli.boundary import OutputError, writing, writing_stdout
+from obbcli.files import write_whole
 from obbcli.report.document import to_json
 
 if TYPE_CHECKING:
@@ -61,30 +60,13 @@ def write_stdout(text: str) -> None:
 
 
 def write_file(path: Path, text: str) -> None:
-    """Write text to a file under a temporary name and rename it: whole or not there.
+    """Write text to a file, whole or not at all.
 
     Raises:
         OutputError: it cannot be written.
     """
-    # Half of a command's own modules, for the few answers that go to a file.
-    import tempfile
-
     with writing(path):
-        path = path.resolve()
-        if path.exists() and not path.is_file():
-            # A device or a pipe: there is nothing to rename, and it must not be replaced.
-            path.write_text(text, encoding="utf-8")
-            return
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
-                file.write(text)
-            os.chmod(name, 0o666 & ~_umask())  # noqa: PTH101  # the name is a str all along
-            os.replace(name, path)  # noqa: PTH105
-        except BaseException:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(name)  # noqa: PTH108
-            raise
+        write_whole(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def _draw(tables: Iterable[Table], path: Path | None) -> None:
@@ -107,10 +89,3 @@ def _stdout() -> TextIO:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
     return sys.stdout
-
-
-def _umask() -> int:
-    """Return the mask of new files, which can only be read by setting it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
