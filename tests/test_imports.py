@@ -56,7 +56,7 @@ def test_answer_into_a_pipe_imports_neither_rich_nor_other_readers(tmp_path, wor
 
     loaded = modules_after(code, *(word.format(path) for word in words))
 
-    assert not loaded & {"rich", "trimesh", "meshio", "scipy"}
+    assert not loaded & {"rich", "trimesh", "meshio", "scipy", "tempfile", "fractions"}
 
 
 @pytest.mark.parametrize("name", obbcli.__all__)

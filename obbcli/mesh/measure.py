@@ -6,7 +6,6 @@ Every sum and product is an elementwise NumPy operation, so the bits depend on n
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -242,6 +241,9 @@ def _high_half(a: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _is_flat(corners: NDArray[np.float64]) -> bool:
     """Return whether one triangle's area is zero, in rational arithmetic."""
+    # Milliseconds to import, for the few triangles that rounding leaves open.
+    from fractions import Fraction
+
     a, b, c = ([Fraction(x) for x in row] for row in corners.tolist())
     u = [q - p for p, q in zip(a, b, strict=True)]
     v = [q - p for p, q in zip(a, c, strict=True)]
