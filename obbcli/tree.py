@@ -5,22 +5,20 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 
 from obbcli import __version__, kernels, treefile
 from obbcli.errors import MeshError, TreeFileError
 from obbcli.mesh import Mesh, load_mesh
+from obbcli.treefile import Fit, Split
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
     from numpy.typing import NDArray
-
-Fit = Literal["triangles", "points", "axis-aligned"]
-Split = Literal["median", "center"]
 
 _FITS = {
     "triangles": kernels.Fit.TRIANGLES,

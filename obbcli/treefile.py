@@ -15,7 +15,7 @@ import struct
 import zlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -30,6 +30,9 @@ MAGIC = b"\x89OBBT\r\n\x1a"
 VERSION = 1
 BLOCK_BYTES = 4096
 ALIGNMENT = 64
+
+Fit = Literal["triangles", "points", "axis-aligned"]
+Split = Literal["median", "center"]
 
 # magic, version, header bytes, header CRC, block bytes, file bytes, boxes, triangles, vertices,
 # scale exponent, description bytes
@@ -208,7 +211,7 @@ def _checked_header(data: memoryview, name: str) -> _Header:
 
 
 def _description(text: bytes, name: str) -> Description:
-    """Return the description, whose every field must be there and of its type."""
+    """Return the description, whose every field must be there, of its type and of use."""
     optional_text, optional_number = (str, type(None)), (int, type(None))
     types: dict[str, type | tuple[type, ...]] = {
         "fit": str,
@@ -222,13 +225,26 @@ def _description(text: bytes, name: str) -> Description:
     try:
         fields = json.loads(text)
         sound = fields.keys() == types.keys() and all(
-            isinstance(fields[key], kind) for key, kind in types.items()
+            isinstance(fields[key], kind) and not isinstance(fields[key], bool)
+            for key, kind in types.items()
         )
     except (ValueError, AttributeError, RecursionError) as fault:
         raise TreeFileError(name, "has a description that is no JSON object") from fault
     if not sound:
         raise TreeFileError(name, "lacks something in its description", "build it again")
-    return Description(**fields)
+    description = Description(**fields)
+    allowed = {
+        "fit": description.fit in get_args(Fit),
+        "split": description.split in get_args(Split),
+        "leaf_size": description.leaf_size >= 1,
+        "max_depth": description.max_depth is None or description.max_depth >= 0,
+    }
+    for field, is_allowed in allowed.items():
+        if not is_allowed:
+            raise TreeFileError(
+                name, f"says that {field} is {fields[field]!r}, which no tree has", "build it again"
+            )
+    return description
 
 
 def _verify_blocks(data: memoryview, crcs: tuple[int, ...], name: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -161,7 +162,15 @@ def test_treefile_rejects_a_description_that_is_none(text: bytes, small: bytes) 
 
 @pytest.mark.parametrize(
     "changes",
-    [{"fit": 5}, {"split": None}, {"leaf_size": "1"}, {"max_depth": 1.5}, {"source": 1}],
+    [
+        {"fit": 5},
+        {"split": None},
+        {"leaf_size": "1"},
+        {"leaf_size": True, "split": "med"},
+        {"max_depth": 1.5},
+        {"max_depth": False, "fit": "t"},
+        {"source": 1},
+    ],
     ids=repr,
 )
 def test_treefile_rejects_a_description_with_a_field_of_another_kind(
@@ -169,6 +178,31 @@ def test_treefile_rejects_a_description_with_a_field_of_another_kind(
 ) -> None:
     with pytest.raises(TreeFileError, match="lacks something in its description"):
         ObbTree.from_bytes(with_description(small, **changes))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"leaf_size": 0},
+        {"leaf_size": -1},
+        {"leaf_size": -(10**30)},
+        {"max_depth": -5},
+        {"fit": "x"},
+        {"split": ""},
+    ],
+    ids=repr,
+)
+def test_treefile_rejects_a_description_that_no_build_has(
+    changes: dict[str, Any], tmp_path: Path
+) -> None:
+    (name,) = changes
+    path = tmp_path / "forged.obbt"
+    arrays = ObbTree.build(Mesh(*soup(3)))._arrays
+    ObbTree(replace(arrays, description=replace(arrays.description, **changes))).save(path)
+
+    for verify in (True, False):
+        with pytest.raises(TreeFileError, match=f"says that {name} is "):
+            ObbTree.open(path, verify=verify)
 
 
 def test_checksum_error_names_the_block(tmp_path: Path) -> None:
