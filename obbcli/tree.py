@@ -156,8 +156,12 @@ class ObbTree:
         return cls(treefile.read_tree(path, verify=verify), Path(path))
 
     @classmethod
-    def from_bytes(cls, data: bytes, name: str = "bytes", verify: bool = True) -> ObbTree:
+    def from_bytes(
+        cls, data: bytes | bytearray | memoryview, name: str = "bytes", verify: bool = True
+    ) -> ObbTree:
         """Return the tree in the bytes of a tree file; `name` is the place named in errors.
+
+        The bytes are copied: what their owner does to them later changes no answer.
 
         Raises:
             TreeFileError: as `open`.
@@ -342,9 +346,9 @@ def begins_as_tree(path: Path) -> bool:
 
 
 def _check_options(fit: str, split: str, leaf_size: int, max_depth: int | None) -> None:
-    if fit not in _FITS:
+    if not isinstance(fit, str) or fit not in _FITS:
         raise MeshError("fit", f"is {fit!r}", "use one of " + ", ".join(get_args(Fit)))
-    if split not in _SPLITS:
+    if not isinstance(split, str) or split not in _SPLITS:
         raise MeshError("split", f"is {split!r}", "use one of " + ", ".join(get_args(Split)))
     if isinstance(leaf_size, bool) or not isinstance(leaf_size, (int, np.integer)) or leaf_size < 1:
         raise MeshError("leaf_size", f"is {leaf_size!r}", "use a whole number of at least 1")

@@ -120,19 +120,25 @@ def read_tree(path: str | os.PathLike[str], *, verify: bool = True) -> TreeArray
         found = file.readinto(buffer.data)
     if found != size:
         raise TreeFileError(str(path), f"ends at byte {found} of {size}", "was it being written?")
-    return parse_tree(buffer, str(path), verify=verify)
+    return _parse(buffer, str(path), verify=verify)
 
 
-def parse_tree(buffer: NDArray[np.uint8] | bytes, name: str, *, verify: bool = True) -> TreeArrays:
-    """Return the arrays in the bytes of a tree file; `name` is the place named in errors.
+def parse_tree(
+    data: bytes | bytearray | memoryview, name: str, *, verify: bool = True
+) -> TreeArrays:
+    """Return the arrays in the bytes of a tree file, copied; `name` is the place named in errors.
 
     Raises:
         TreeFileError: as `read_tree`.
     """
-    if isinstance(buffer, bytes):
-        aligned = _aligned_bytes(len(buffer))
-        aligned[:] = np.frombuffer(buffer, np.uint8)
-        buffer = aligned
+    plain = data.tobytes() if isinstance(data, memoryview) else data
+    buffer = _aligned_bytes(len(plain))
+    buffer[:] = np.frombuffer(plain, np.uint8)
+    return _parse(buffer, name, verify=verify)
+
+
+def _parse(buffer: NDArray[np.uint8], name: str, *, verify: bool) -> TreeArrays:
+    """Return the arrays as views of a buffer that is aligned and nobody else's."""
     header = _checked_header(buffer.data, name)
     data = buffer[header.header_bytes :]
     if verify:

@@ -215,6 +215,9 @@ def test_pair_limit_below_one_is_refused(limit: int) -> None:
         ("duration", {"duration": -1.0}),
         ("duration", {"duration": float("nan")}),
         ("duration", {"duration": float("inf")}),
+        ("duration", {"duration": "x"}),
+        ("duration", {"duration": "1"}),
+        ("duration", {"duration": [1.0]}),
     ],
     ids=str,
 )

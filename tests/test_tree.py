@@ -188,7 +188,9 @@ def test_tree_keeps_triangles_when_the_callers_arrays_change() -> None:
     [
         {"fit": "best"},
         {"fit": None},
+        {"fit": ["triangles"]},
         {"split": "middle"},
+        {"split": {}},
         {"leaf_size": 0},
         {"leaf_size": -1},
         {"leaf_size": 1.0},

@@ -70,6 +70,32 @@ def test_tree_from_bytes_is_the_tree_in_the_file(tmp_path: Path) -> None:
         ObbTree.from_bytes(path.read_bytes()[:-1], "stdin")
 
 
+@pytest.mark.parametrize(
+    "given",
+    [bytearray, lambda data: memoryview(bytearray(data)), lambda data: _every_other(data)],
+    ids=["bytearray", "memoryview", "strided"],
+)
+def test_tree_from_bytes_that_can_change_is_its_own(given: Any, tmp_path: Path) -> None:
+    path = tmp_path / "tree.obbt"
+    tree = built(soup(50))
+    tree.save(path)
+    data = given(path.read_bytes())
+
+    again = ObbTree.from_bytes(data)
+    for place in range(len(data)):
+        data[place] = 0
+
+    again.check()
+    assert np.array_equal(again.mesh.triangles, tree.mesh.triangles)
+
+
+def _every_other(data: bytes) -> memoryview:
+    """Return a view of the same bytes with others between them."""
+    wide = bytearray(2 * len(data))
+    wide[::2] = data
+    return memoryview(wide)[::2]
+
+
 def test_tree_file_carries_options_source_and_hash(tmp_path: Path) -> None:
     mesh_path = tmp_path / "dïsk \N{GREEK SMALL LETTER PHI}.off"
     mesh_path.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 1 2 3\n")
