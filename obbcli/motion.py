@@ -1,23 +1,26 @@
 """Where a body is and how it moves: `Pose`, `Motion` and the `Body` that carries them.
 
-World position of a vertex `p`: `x(0) = Q p + s`, then `x(t) = K + t V + R(t W) (x(0) - K)`.
+World position of a vertex `p`: `x(0) = Q p + s`, then `x(t) = K + t V + R(t W) (x(0) - K)`; or
+through given poses, in pieces of that kind.
 """
 
 from __future__ import annotations
 
-import math
 import os
+from bisect import bisect_right
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 
-from obbcli import kernels
 from obbcli.arrays import as_floats, as_vector
 from obbcli.errors import MotionError
+from obbcli.pose import Pose, vector_or_zero
+from obbcli.rotation import rotation_matrix, rotation_vector, turn_after
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -35,60 +38,10 @@ class Surface(Protocol):
 
 Shape: TypeAlias = "Surface | str | os.PathLike[str]"
 
-# What a matrix read from a file with ten digits still meets; boxes and bounds allow for it.
-ORTHONORMAL_TOLERANCE = 1e-9
+__all__ = ["Body", "Motion", "PathMotion", "Pose", "Shape", "Surface", "as_body", "rotation_matrix"]
 
-
-@dataclass(frozen=True, init=False, eq=False)
-class Pose:
-    """Where a body is at t = 0: `x(0) = Q p + s`.
-
-    Args:
-        rotation: Q as a (3, 3) matrix, orthonormal to 1e-9 and right-handed, used literally; or a
-            (3,) rotation vector in radians (axis times angle). None: no turn.
-        translation: s, (3,) mesh units. None: no shift.
-
-    Attributes:
-        rotation: float64 (3, 3), read-only.
-        translation: float64 (3,), read-only.
-
-    Raises:
-        MotionError: not finite, of another shape, not orthonormal, or a reflection.
-    """
-
-    rotation: NDArray[np.float64]
-    translation: NDArray[np.float64]
-
-    def __init__(
-        self, rotation: ArrayLike | None = None, translation: ArrayLike | None = None
-    ) -> None:
-        object.__setattr__(self, "rotation", _as_rotation(rotation))
-        object.__setattr__(self, "translation", _vector_or_zero(translation, "translation"))
-
-    @property
-    def is_identity(self) -> bool:
-        """Return whether the pose moves nothing; such a pose rounds nothing either."""
-        return not self.translation.any() and np.array_equal(self.rotation, np.eye(3))
-
-    @cached_property
-    def kernel(self) -> kernels.Pose:
-        """The pose as the kernels see it."""
-        return kernels.Pose(self.rotation, self.translation)
-
-    def apply(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Return the posed points, float64 (N, 3), rounded as the queries round them.
-
-        Args:
-            points: (N, 3) mesh units.
-
-        Raises:
-            MotionError: not (N, 3) finite numbers.
-        """
-        p = as_floats(points, (None, 3), "points", MotionError)
-        if self.is_identity:
-            return p
-        q = self.rotation
-        return p[:, :1] * q[:, 0] + p[:, 1:2] * q[:, 1] + p[:, 2:] * q[:, 2] + self.translation
+# Rad: nearer to half a turn, a matrix orthonormal to 1e-9 does not tell which way round is meant.
+_HALF_TURN_MARGIN = 1e-8
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -122,97 +75,175 @@ class Motion:
         angular_velocity: ArrayLike | None = None,
         pivot: ArrayLike | None = None,
     ) -> None:
-        velocity = _vector_or_zero(linear_velocity, "linear_velocity")
-        spin = _vector_or_zero(angular_velocity, "angular_velocity")
+        velocity = vector_or_zero(linear_velocity, "linear_velocity")
+        spin = vector_or_zero(angular_velocity, "angular_velocity")
         point = None if pivot is None else as_vector(pivot, "pivot", MotionError)
         object.__setattr__(self, "linear_velocity", velocity)
         object.__setattr__(self, "angular_velocity", spin)
         object.__setattr__(self, "pivot", point)
         object.__setattr__(self, "is_at_rest", not (velocity.any() or spin.any()))
 
+    @staticmethod
+    def through(times: ArrayLike, poses: Sequence[Pose]) -> PathMotion:
+        """Return the motion through given poses at given times.
 
-def rotation_matrix(vector: ArrayLike, *, degrees: bool = False) -> NDArray[np.float64]:
-    """Return the float64 (3, 3) matrix that turns by the length of `vector` about its direction.
+        Between two poses the velocities are constant: the origin of the mesh's coordinates goes
+        straight, and the body turns about it the shorter way round. Before the first time the body
+        rests at the first pose, after the last at the last. The poses place the mesh themselves: a
+        `Body` that moves so takes no other pose.
 
-    A zero vector gives the identity exactly; in degrees, quarter turns about a coordinate axis
-    are exact as well.
+        Args:
+            times: (N,) s, N at least 2, strictly increasing, the first at least 0.
+            poses: N poses; from one to the next less than half a turn. What turned further in
+                between needs more poses: matrices cannot tell.
 
-    Args:
-        vector: (3,) axis times angle.
-        degrees: whether the angle is in degrees rather than radians.
+        Raises:
+            MotionError: times or poses are of another number or kind or order, or a piece, which is
+                named, turns by half a turn (to 1e-8) or moves faster than a double can hold.
+        """
+        return PathMotion(times, poses)
 
-    Raises:
-        MotionError: not three finite numbers.
+    def pose_at(self, t: float, pose: Pose | None = None, pivot: ArrayLike | None = None) -> Pose:
+        """Return where the motion takes a body by the time `t`, in closed form.
+
+        The map `x(0) -> x(t)`: rotation `R(t W)`, translation `K + t V - R(t W) K`; given a pose,
+        the map of mesh coordinates that this makes with it. Off by a few roundings of
+        `|K| + |s| + t |V|`, however many turns that is.
+
+        Args:
+            t: s, of either sign.
+            pose: the body's pose at t = 0. None: as loaded.
+            pivot: K where the motion has none of its own, (3,) world coordinates.
+
+        Raises:
+            MotionError: the time is not a finite number, the motion turns and neither it nor the
+                caller says about which pivot, or positions leave the range of double.
+        """
+        time = _as_time(t, "t")
+        start = _AS_LOADED if pose is None else pose
+        if self.is_at_rest or time == 0:
+            return start
+        turns = bool(self.angular_velocity.any())
+        center = self.pivot if self.pivot is not None or pivot is None else pivot
+        if turns and center is None:
+            raise MotionError(
+                "pivot", "is not given, and the motion turns", "pass the point it turns about"
+            )
+        turn = turn_after(self.angular_velocity, time)
+        middle = vector_or_zero(center, "pivot")
+        with np.errstate(over="ignore", invalid="ignore"):  # Pose refuses what comes of it
+            shift = time * self.linear_velocity
+            if not turns:
+                return Pose(start.rotation, start.translation + shift)
+            shift = shift + turn.shift_of(start.translation - middle)
+            return Pose(turn.matrix @ start.rotation, start.translation + shift)
+
+
+class PathMotion(Motion):
+    """How a body moves through given poses; made by `Motion.through`.
+
+    It has no one velocity, and no pivot: `piece` has those of each piece.
+
+    Attributes:
+        times: float64 (N,), read-only, s.
+        poses: N poses.
+        is_at_rest: whether all poses are the same.
     """
-    turn = as_vector(vector, "rotation", MotionError)
-    angle = math.hypot(*turn)
-    if angle == 0.0:
-        return np.eye(3)
-    if not math.isfinite(angle):
-        raise MotionError("rotation", f"turns by {angle}", "give an angle that a double can hold")
-    x, y, z = (turn / angle).tolist()
-    cosine, sine, versine = _trigonometry(angle, degrees)
-    matrix = np.array(
-        [
-            [cosine + versine * x * x, versine * x * y - sine * z, versine * x * z + sine * y],
-            [versine * x * y + sine * z, cosine + versine * y * y, versine * y * z - sine * x],
-            [versine * x * z - sine * y, versine * y * z + sine * x, cosine + versine * z * z],
-        ]
-    )
-    return matrix + 0.0  # no negative zeros
 
+    times: NDArray[np.float64]
+    poses: tuple[Pose, ...]
 
-def _trigonometry(angle: float, degrees: bool) -> tuple[float, float, float]:
-    """Return cos, sin and 1 - cos of an angle, the last without cancellation near 0."""
-    if not degrees:
-        return math.cos(angle), math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
-    # The remainder is exact, so that right angles stay right.
-    angle = math.remainder(angle, 360.0)
-    quarter = round(angle / 90.0)
-    rest = math.radians(angle - 90.0 * quarter)
-    pairs = (
-        (math.cos(rest), math.sin(rest)),
-        (-math.sin(rest), math.cos(rest)),
-        (-math.cos(rest), -math.sin(rest)),
-        (math.sin(rest), -math.cos(rest)),
-    )
-    cosine, sine = pairs[quarter % 4]
-    versine = 2.0 * math.sin(0.5 * rest) ** 2 if quarter % 4 == 0 else 1.0 - cosine
-    return cosine, sine, versine
+    def __init__(self, times: ArrayLike, poses: Sequence[Pose]) -> None:
+        clock = as_floats(times, (None,), "times", MotionError)
+        places = tuple(poses)
+        for k, pose in enumerate(places):
+            if not isinstance(pose, Pose):
+                _refuse(f"poses[{k}]", pose, "pass Pose objects")
+        if len(places) != len(clock) or len(clock) < 2:
+            raise MotionError(
+                "times", f"{len(clock)} for {len(places)} poses", "give as many, at least two"
+            )
+        if clock[0] < 0:
+            raise MotionError("times[0]", f"is {clock[0]}", "start at 0 or later")
+        for k in np.flatnonzero(~(np.diff(clock) > 0))[:1].tolist():
+            raise MotionError(
+                f"times[{k + 1}]", f"is {clock[k + 1]} after {clock[k]}", "let times increase"
+            )
+        object.__setattr__(self, "times", clock)
+        object.__setattr__(self, "poses", places)
+        pieces = tuple(self._piece(k) for k in range(len(clock) - 1))
+        object.__setattr__(self, "_pieces", pieces)
+        object.__setattr__(self, "is_at_rest", all(piece.is_at_rest for piece in pieces))
 
+    _pieces: tuple[Motion, ...]
 
-def _as_rotation(rotation: ArrayLike | None) -> NDArray[np.float64]:
-    """Return a checked, read-only rotation matrix from a matrix, a rotation vector or None."""
-    if rotation is None or _is_vector(rotation):
-        matrix = rotation_matrix((0.0, 0.0, 0.0) if rotation is None else rotation)
-        matrix.setflags(write=False)
-        return matrix
-    matrix = as_floats(rotation, (3, 3), "rotation", MotionError)
-    # Cut to a tame size first: the products of huge entries would overflow with a warning.
-    tame = matrix.clip(-2.0, 2.0)
-    defect = float(np.abs(tame @ tame.T - np.eye(3)).max())
-    if defect > ORTHONORMAL_TOLERANCE:
+    def piece(self, index: int) -> Motion:
+        """Return the motion from pose `index` to the next, on a clock that starts there.
+
+        Index -1 and N - 1 are the rest before and after.
+        """
+        return self._pieces[index] if 0 <= index < len(self._pieces) else _AT_REST
+
+    def index_at(self, t: float) -> int:
+        """Return the index of the piece that `t` is in: of two, the later."""
+        return bisect_right(self.times, t) - 1
+
+    def pose_at(self, t: float, pose: Pose | None = None, pivot: ArrayLike | None = None) -> Pose:
+        """Return where the motion has taken the mesh by the time `t`; exact at the given times.
+
+        Args:
+            t: s.
+            pose: none, or the first of the motion's own.
+            pivot: none.
+
+        Raises:
+            MotionError: the time is not a finite number, or a pose or pivot is given.
+        """
+        time = _as_time(t, "t")
+        self.first_pose(_AS_LOADED if pose is None else pose)
+        if pivot is not None:
+            raise MotionError("pivot", "is given to a motion through poses", "leave it out")
+        index = max(self.index_at(time), 0)
+        at = self.poses[index]
+        return self.piece(index).pose_at(max(time - float(self.times[index]), 0.0), at)
+
+    def first_pose(self, pose: Pose) -> Pose:
+        """Return the pose at t = 0 of a body that has this motion and is said to be at `pose`.
+
+        Raises:
+            MotionError: it is neither the identity nor the motion's first pose.
+        """
+        if pose.is_identity or _is_same(pose, self.poses[0]):
+            return self.poses[0]
         raise MotionError(
-            "rotation",
-            f"is not orthonormal to {ORTHONORMAL_TOLERANCE:g}: Q Q^T is off by {defect:.3g}",
-            "re-orthonormalise it",
+            "pose", "is given beside a motion through poses", "make it part of those poses"
         )
-    if np.linalg.det(matrix) < 0:
-        raise MotionError("rotation", "is a reflection (determinant -1)", "mirror the mesh instead")
-    return matrix
+
+    def _piece(self, index: int) -> Motion:
+        here, there = self.poses[index : index + 2]
+        if _is_same(here, there):
+            return _AT_REST
+        turn = np.zeros(3)
+        if not np.array_equal(here.rotation, there.rotation):
+            turn = rotation_vector(there.rotation @ here.rotation.T)
+        name = f"piece {index} of the motion, from pose {index} to {index + 1}"
+        if float(np.linalg.norm(turn)) > np.pi - _HALF_TURN_MARGIN:
+            raise MotionError(name, "turns by half a turn", "give a pose in between")
+        time = self.times[index + 1] - self.times[index]
+        with np.errstate(over="ignore", invalid="ignore"):
+            velocity, spin = (there.translation - here.translation) / time, turn / time
+        if not (np.isfinite(velocity).all() and np.isfinite(spin).all()):
+            raise MotionError(name, f"is too fast: it takes {time} s", "let it take longer")
+        return Motion(velocity, spin, here.translation)
 
 
-def _is_vector(value: ArrayLike) -> bool:
-    """Return whether a value has one dimension; ragged lists have none."""
-    try:
-        return np.ndim(value) == 1
-    except ValueError:
-        return False
+def _is_same(a: Pose, b: Pose) -> bool:
+    return np.array_equal(a.rotation, b.rotation) and np.array_equal(a.translation, b.translation)
 
 
-def _vector_or_zero(value: ArrayLike | None, name: str) -> NDArray[np.float64]:
-    """Return a checked, read-only (3,) array; None stands for zero."""
-    return as_vector((0.0, 0.0, 0.0) if value is None else value, name, MotionError)
+def _as_time(value: float, name: str) -> float:
+    """Return a finite number of seconds."""
+    return float(as_floats(value, (), name, MotionError))
 
 
 def _refuse(name: str, value: object, remedy: str) -> None:
@@ -230,11 +261,12 @@ class Body:
 
     Args:
         shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        pose: where it is at t = 0.
+        pose: where it is at t = 0; that of the motion where this goes through poses.
         motion: how it moves from there.
 
     Raises:
-        MotionError: an argument is of another kind.
+        MotionError: an argument is of another kind, or a motion through poses comes with another
+            pose.
     """
 
     shape: Shape
@@ -252,6 +284,8 @@ class Body:
             _refuse("pose", self.pose, "pass a Pose")
         if not isinstance(self.motion, Motion):
             _refuse("motion", self.motion, "pass a Motion")
+        if isinstance(self.motion, PathMotion):
+            object.__setattr__(self, "pose", self.motion.first_pose(self.pose))
 
 
 def as_body(shape: Body | Shape) -> Body:

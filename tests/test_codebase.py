@@ -23,7 +23,7 @@ LONGEST_FILE = 400
 LAYERS = (
     ("errors", "arrays", "files"),
     ("kernels",),
-    ("mesh", "motion", "accuracy", "results", "primitives", "treefile"),
+    ("mesh", "rotation", "pose", "motion", "accuracy", "results", "primitives", "treefile"),
     ("tree",),
     ("question", "contact", "nearest", "query"),
     ("scene", "sweep", "study", "view"),

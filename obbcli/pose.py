@@ -1,0 +1,106 @@
+"""Where a body is: `Pose`, a rotation and a translation taken literally."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from obbcli import kernels
+from obbcli.arrays import as_floats, as_vector
+from obbcli.errors import MotionError
+from obbcli.rotation import rotation_matrix
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+# What a matrix read from a file with ten digits still meets; boxes and bounds allow for it.
+ORTHONORMAL_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Pose:
+    """Where a body is at t = 0: `x(0) = Q p + s`.
+
+    Args:
+        rotation: Q as a (3, 3) matrix, orthonormal to 1e-9 and right-handed, used literally; or a
+            (3,) rotation vector in radians (axis times angle). None: no turn.
+        translation: s, (3,) mesh units. None: no shift.
+
+    Attributes:
+        rotation: float64 (3, 3), read-only.
+        translation: float64 (3,), read-only.
+
+    Raises:
+        MotionError: not finite, of another shape, not orthonormal, or a reflection.
+    """
+
+    rotation: NDArray[np.float64]
+    translation: NDArray[np.float64]
+
+    def __init__(
+        self, rotation: ArrayLike | None = None, translation: ArrayLike | None = None
+    ) -> None:
+        object.__setattr__(self, "rotation", _as_rotation(rotation))
+        object.__setattr__(self, "translation", vector_or_zero(translation, "translation"))
+
+    @property
+    def is_identity(self) -> bool:
+        """Return whether the pose moves nothing; such a pose rounds nothing either."""
+        return not self.translation.any() and np.array_equal(self.rotation, np.eye(3))
+
+    @cached_property
+    def kernel(self) -> kernels.Pose:
+        """The pose as the kernels see it."""
+        return kernels.Pose(self.rotation, self.translation)
+
+    def apply(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return the posed points, float64 (N, 3), rounded as the queries round them.
+
+        Args:
+            points: (N, 3) mesh units.
+
+        Raises:
+            MotionError: not (N, 3) finite numbers.
+        """
+        p = as_floats(points, (None, 3), "points", MotionError)
+        if self.is_identity:
+            return p
+        q = self.rotation
+        return p[:, :1] * q[:, 0] + p[:, 1:2] * q[:, 1] + p[:, 2:] * q[:, 2] + self.translation
+
+
+def _as_rotation(rotation: ArrayLike | None) -> NDArray[np.float64]:
+    """Return a checked, read-only rotation matrix from a matrix, a rotation vector or None."""
+    if rotation is None or _is_vector(rotation):
+        matrix = rotation_matrix((0.0, 0.0, 0.0) if rotation is None else rotation)
+        matrix.setflags(write=False)
+        return matrix
+    matrix = as_floats(rotation, (3, 3), "rotation", MotionError)
+    # Cut to a tame size first: the products of huge entries would overflow with a warning.
+    tame = matrix.clip(-2.0, 2.0)
+    defect = float(np.abs(tame @ tame.T - np.eye(3)).max())
+    if defect > ORTHONORMAL_TOLERANCE:
+        raise MotionError(
+            "rotation",
+            f"is not orthonormal to {ORTHONORMAL_TOLERANCE:g}: Q Q^T is off by {defect:.3g}",
+            "re-orthonormalise it",
+        )
+    if np.linalg.det(matrix) < 0:
+        raise MotionError("rotation", "is a reflection (determinant -1)", "mirror the mesh instead")
+    return matrix
+
+
+def _is_vector(value: ArrayLike) -> bool:
+    """Return whether a value has one dimension; ragged lists have none."""
+    try:
+        return np.ndim(value) == 1
+    except ValueError:
+        return False
+
+
+def vector_or_zero(value: ArrayLike | None, name: str) -> NDArray[np.float64]:
+    """Return a checked, read-only (3,) array; None stands for zero."""
+    return as_vector((0.0, 0.0, 0.0) if value is None else value, name, MotionError)
