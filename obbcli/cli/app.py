@@ -43,6 +43,37 @@ class _App(GuardedHelp, click.Group):
         command: click.Command = module.command
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; of a misspelt one say what it is nearest to."""
+        if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(args[0], _COMMANDS, n=1)
+            hint = f", did you mean '{near[0]}'?" if near else ""
+            ctx.fail(f"No such command {args[0]!r}{hint}")
+        return super().resolve_command(ctx, args)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the words before the command's name; options of commands belong after it."""
+        try:
+            return super().parse_args(ctx, args)
+        except click.NoSuchOption as fault:
+            name = next((word for word in args if word in _COMMANDS), "COMMAND")
+            known = {option for n in _COMMANDS for option in _options(self, ctx, n)}
+            if fault.option_name not in known:
+                raise
+            place = f"belongs after the command: obbtree {name} {fault.option_name}"
+            raise click.UsageError(f"{fault.option_name} {place}", ctx) from fault
+
+
+def _options(app: click.Group, context: click.Context, name: str) -> list[str]:
+    """Return the options of a command."""
+    command = app.get_command(context, name)
+    assert command is not None
+    return [option for param in command.params for option in param.opts]
+
 
 @click.group(
     cls=_App,

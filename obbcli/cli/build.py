@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from obbcli.cli.boundary import OutputError, UsageError, as_error, note, report, writing
-from obbcli.cli.inputs import STDIN, read_shape
+from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options import Command, common_options, gathered, option
 from obbcli.cli.output import emit
 from obbcli.cli.progress import bar
+from obbcli.cli.types import PathName, Whole
 from obbcli.errors import MeshError, ObbError
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ build_options = gathered(
         option(
             _TREE,
             "--leaf-size",
-            type=click.IntRange(min=1),
+            type=Whole(1),
             default=1,
             show_default=True,
             metavar="N",
@@ -83,7 +84,7 @@ build_options = gathered(
         option(
             _TREE,
             "--max-depth",
-            type=click.IntRange(min=0),
+            type=Whole(0),
             metavar="N",
             help="Do not split boxes at level N [default: no limit].",
         ),
@@ -110,9 +111,11 @@ Examples:
   obbtree build scan.ply --leaf-size 4 -o coarse.obbt
 """,
 )
-@click.argument("meshes", metavar="MESH...", nargs=-1, required=True)
+@click.argument("meshes", metavar="MESH...", nargs=-1, required=True, type=PathName())
 @build_options
-@common_options("Write the tree to FILE, or the trees into DIR.", metavar="FILE|DIR")
+@common_options(
+    "Write the tree to FILE, or the trees into DIR.", metavar="FILE|DIR", takes_dash=False
+)
 def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -> int:
     """Build trees over meshes and keep them: gear.stl becomes gear.obbt.
 
@@ -123,18 +126,23 @@ def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -
 
     files: list[Built | ObbError] = []
     code = 0
-    for name, target in _targets(meshes, common.output):
+    targets = _targets(meshes, common.output)
+    for _, target in targets:
+        keep_inputs(target, meshes)
+    for name, target in targets:
         try:
             files.append(_build(name, target, how, common))
         except (ObbError, OSError, MemoryError) as fault:
             files.append(as_error(fault))
             code = max(code, report(as_error(fault), as_json=common.json))
-    built = sum(not isinstance(file, ObbError) for file in files)
-    if built:
+    failed = sum(isinstance(file, ObbError) for file in files)
+    if common.json or failed < len(files):
         record = build_record(meshes, files, _options_part(how))
         emit(record, build_tables, common._replace(output=None), bare=lambda _: "")
-    if len(meshes) > 1 and built < len(meshes) and not common.quiet:
-        note(f"note: {len(meshes) - built} of {len(meshes)} trees were not built")
+    # As JSON the errors on stderr are objects, and the document counts them.
+    if len(meshes) > 1 and failed and not (common.quiet or common.json):
+        verb = "was" if failed == 1 else "were"
+        note(f"note: {failed} of {len(meshes)} trees {verb} not built")
     return code
 
 
@@ -171,7 +179,12 @@ def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) ->
     loaded = time.perf_counter()
     with bar(f"building {name}", len(mesh.triangles), wanted=common.shows_progress) as move:
         options = _options_part(how)
-        tree = ObbTree.build(mesh, **options, lazy=False, max_memory=how.max_memory, progress=move)
+        limit = how.max_memory
+        try:
+            tree = ObbTree.build(mesh, **options, lazy=False, max_memory=limit, progress=move)
+        except MeshError as fault:
+            # The mesh knows its file's name alone, and two folders may hold the same.
+            raise MeshError(name, fault.fault, fault.remedy) from fault
     ready = time.perf_counter()
     with writing(target):
         size = tree.save(target)

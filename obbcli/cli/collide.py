@@ -8,10 +8,11 @@ import click
 
 from obbcli.cli.asking import exit_code, naming_options, refuse_unanswered, run, with_load_time
 from obbcli.cli.boundary import UsageError, note
-from obbcli.cli.inputs import read_pair
+from obbcli.cli.inputs import keep_inputs, read_pair
 from obbcli.cli.options import Command, common_options, option, verify_option
 from obbcli.cli.output import emit
 from obbcli.cli.question import Question, accuracy_options, motion_options, pose_options
+from obbcli.cli.types import PathName, Whole
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -39,13 +40,13 @@ Examples:
   obbtree collide a.stl b.stl --exit-code --quiet || echo "they touch"
 """,
 )
-@click.argument("a", metavar="A")
-@click.argument("b", metavar="B")
+@click.argument("a", metavar="A", type=PathName())
+@click.argument("b", metavar="B", type=PathName())
 @option(_QUESTION, "--all-pairs", is_flag=True, help="List every intersecting pair of triangles.")
 @option(
     _QUESTION,
     "--limit",
-    type=click.IntRange(min=1),
+    type=Whole(1),
     metavar="N",
     help="List at most N pairs (with --all-pairs).",
 )
@@ -83,6 +84,7 @@ def command(
             ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
         )
     )
+    keep_inputs(common.output, (a, b))
     files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
     with naming_options(question):
         record = _ask(question, files, flags, common)

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from obbcli.cli.asking import exit_code, naming_options, refuse_unanswered, run, with_load_time
-from obbcli.cli.inputs import read_pair
+from obbcli.cli.inputs import keep_inputs, read_pair
 from obbcli.cli.options import Command, common_options, option, verify_option
 from obbcli.cli.output import emit
 from obbcli.cli.question import Question, accuracy_options, motion_options, pose_options
+from obbcli.cli.types import PathName, Whole
 
 if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
@@ -32,10 +33,10 @@ Examples:
   obbtree first-contact a.stl b.stl --omega 0 0 90 --degrees --exit-code --quiet
 """,
 )
-@click.argument("a", metavar="A")
-@click.argument("b", metavar="B")
+@click.argument("a", metavar="A", type=PathName())
+@click.argument("b", metavar="B", type=PathName())
 @option(_QUESTION, "--all-contacts", is_flag=True, help="List every pair of triangles that meets.")
-@option(_QUESTION, "--limit", type=click.IntRange(min=1), metavar="N", help="List N at most.")
+@option(_QUESTION, "--limit", type=Whole(1), metavar="N", help="List N at most.")
 @option(_QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @option(
     _QUESTION,
@@ -75,6 +76,7 @@ def command(
             ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
         )
     )
+    keep_inputs(common.output, (a, b))
     files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
     with naming_options(question):
         record = _ask(question, files, common)

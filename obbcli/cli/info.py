@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from obbcli.cli.inputs import read_shape
+from obbcli.cli.inputs import keep_inputs, read_shape
 from obbcli.cli.options import Command, common_options, option, verify_option
 from obbcli.cli.output import emit
+from obbcli.cli.types import PathName
 
 if TYPE_CHECKING:
     from obbcli.cli.options import CommonOptions
@@ -26,7 +27,7 @@ Examples:
   obbtree info gear.obbt --json
 """,
 )
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=PathName())
 @option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
 @verify_option
 @common_options()
@@ -41,6 +42,7 @@ def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> i
     from obbcli.report.info import info_record, info_tables
     from obbcli.tree import ObbTree
 
+    keep_inputs(common.output, (file,))
     start = time.perf_counter()
     shape, sha256 = read_shape(file, verify=not no_verify)
     if check:

@@ -14,6 +14,8 @@ from obbcli.errors import MeshError
 from obbcli.report.record import Source, file_sha256
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from obbcli.mesh import Mesh
     from obbcli.tree import ObbTree
 
@@ -46,6 +48,20 @@ class Input(NamedTuple):
         if with_sha256 and digest is None:
             digest = file_sha256(self.name)
         return Source(self.name, digest, self.tree.triangle_count)
+
+
+def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
+    """Refuse to write an output over an input.
+
+    Raises:
+        UsageError: `output` is one of the files, under whatever name.
+    """
+    if output is None or not output.is_file():
+        return
+    for name in names:
+        if name != STDIN and Path(name).is_file() and output.samefile(name):
+            fault = f"is the input {name}, which would be lost"
+            raise UsageError(f"-o {output}", fault, "write to another file")
 
 
 def read_pair(a: str, b: str, *, verify: bool, progress: bool) -> tuple[Input, Input]:

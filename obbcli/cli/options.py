@@ -7,13 +7,13 @@ groups and not thirty options.
 from __future__ import annotations
 
 import functools
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
 from obbcli.cli.boundary import writing_stdout
+from obbcli.cli.types import Finite, PathName
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,23 +22,6 @@ if TYPE_CHECKING:
 
 
 _COMMON = "Common"
-
-
-class Finite(click.types.FloatParamType):
-    """A finite number, at least `minimum` where one is given."""
-
-    def __init__(self, minimum: float = -math.inf) -> None:
-        self.minimum = minimum
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """Return the number, or fail with what was found."""
-        number = float(super().convert(value, param, ctx))
-        if not (math.isfinite(number) and number >= self.minimum):
-            least = f" of at least {self.minimum:g}" if math.isfinite(self.minimum) else ""
-            self.fail(f"{value!r} is not a finite number{least}", param, ctx)
-        return number
 
 
 class GroupedOption(click.Option):
@@ -125,8 +108,23 @@ def _path(_context: click.Context, _param: click.Parameter, name: str | None) ->
     return None if name in (None, "-") else Path(name)
 
 
-def common_options(output: str = "Write the answer to FILE.", metavar: str = "FILE") -> Decorator:
-    """Return the options of every command; `output` and `metavar` are the help of `-o`."""
+def _place(context: click.Context, param: click.Parameter, name: str | None) -> Path | None:
+    """Return where files go, which are not written to standard output."""
+    if name == "-":
+        raise click.BadParameter("trees go to files, not to standard output", context, param)
+    return None if name is None else Path(name)
+
+
+def common_options(
+    output: str = "Write the answer to FILE.", *, metavar: str = "FILE", takes_dash: bool = True
+) -> Decorator:
+    """Return the options of every command.
+
+    Args:
+        output: the help of `-o`.
+        metavar: what it calls its value.
+        takes_dash: whether `-` means standard output there.
+    """
     return gathered(
         "common",
         CommonOptions,
@@ -135,7 +133,8 @@ def common_options(output: str = "Write the answer to FILE.", metavar: str = "FI
                 _COMMON,
                 "-o",
                 "--output",
-                callback=_path,
+                type=PathName(),
+                callback=_path if takes_dash else _place,
                 metavar=metavar,
                 help=output,
             ),

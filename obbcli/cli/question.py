@@ -10,7 +10,8 @@ import click
 
 from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
 from obbcli.cli.boundary import UsageError
-from obbcli.cli.options import Finite, gathered, option, vector
+from obbcli.cli.options import gathered, option, vector
+from obbcli.cli.types import Finite, Whole
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
@@ -172,8 +173,8 @@ def _accuracy(name: str, **attributes: Any) -> Decorator:
     return option("Accuracy", name, **attributes)
 
 
-_COUNT = click.IntRange(min=1)
-_DEPTH = click.IntRange(min=0)
+_COUNT = Whole(1)
+_DEPTH = Whole(0)
 accuracy_options = gathered(
     "accuracy",
     AccuracyOptions,

@@ -42,11 +42,15 @@ def build_record(
         options: what shaped the trees.
     """
     inputs = [_source(name, file)._asdict() for name, file in zip(names, files, strict=True)]
+    errors = [_error(name, file) for name, file in zip(names, files, strict=True)]
     return document(
         "build",
         inputs,
         options=options,
-        result={"files": [_file_part(file) for file in files]},
+        result={
+            "files": [_file_part(file) for file in files],
+            "errors": [error for error in errors if error is not None],
+        },
         stats={"seconds": [dict(getattr(file, "seconds", {})) for file in files]},
     )
 
@@ -55,6 +59,13 @@ def _source(name: str, file: Built | ObbError) -> Source:
     if isinstance(file, ObbError):
         return Source(name, None, None)
     return Source(name, file.tree.source_sha256, file.tree.triangle_count)
+
+
+def _error(name: str, file: Built | ObbError) -> Record | None:
+    """Return why there is no tree of a mesh; None where there is one."""
+    if not isinstance(file, ObbError):
+        return None
+    return {"path": name, "error": file.fault, "where": file.where, "remedy": file.remedy}
 
 
 def _file_part(file: Built | ObbError) -> Record:

@@ -147,7 +147,12 @@ def test_help_of_a_command_has_an_example_and_names_every_option(obbtree, name):
 @pytest.mark.parametrize(
     ("words", "fault"),
     [
-        (("colide", "a", "b"), "No such command 'colide'"),
+        (("colide", "a", "b"), "No such command 'colide', did you mean 'collide'?"),
+        (("frist-contact",), "did you mean 'first-contact'?"),
+        (("xyzzy",), "No such command 'xyzzy'; see"),
+        (("--json", "collide", "a", "b"), "belongs after the command: obbtree collide --json"),
+        (("-q",), "belongs after the command: obbtree COMMAND -q"),
+        (("info", ""), "an empty word names no file"),
         (("--nonsense",), "No such option"),
         (("info",), "Missing argument 'FILE'"),
         (("collide", "a.stl"), "Missing argument 'B'"),
@@ -179,3 +184,16 @@ def test_shell_completion_is_offered(monkeypatch, capsys, shell):
 
     assert end.value.code == 0
     assert "_OBBTREE_COMPLETE" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", ["collide sam", "build a.stl sam", "info -o sam"])
+def test_shell_completes_files(monkeypatch, capsys, words):
+    monkeypatch.setenv("_OBBTREE_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", f"obbtree {words}")
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split())))
+
+    with pytest.raises(SystemExit) as end:
+        main([])
+
+    assert end.value.code == 0
+    assert capsys.readouterr().out == "file,sam\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 import sys
 from typing import get_args
 
@@ -167,8 +168,13 @@ def test_build_with_several_faults_exits_with_the_highest(here, obbtree):
         (("cube.stl", "./cube.stl"), "would hold 2 trees"),
         (("-",), "add -o FILE"),
         ((), "Missing argument"),
-        (("cube.stl", "--leaf-size", "0"), "0 is not in the range"),
-        (("cube.stl", "--max-depth", "-1"), "-1 is not in the range"),
+        (("cube.stl", "--leaf-size", "0"), "'0' is not a whole number of at least 1"),
+        (("cube.stl", "--max-depth", "-1"), "'-1' is not a whole number of at least 0"),
+        (("cube.stl", "--max-depth", "1.5"), "'1.5' is not a whole number of at least 0"),
+        (("cube.stl", "--max-depth", "1_0"), "'1_0' is not a whole number of at least 0"),
+        (("cube.stl", "-o", ""), "an empty word names no file"),
+        (("cube.stl", "-o", "-"), "not to standard output"),
+        (("",), "an empty word names no file"),
         (("cube.stl", "--fit", "hull"), "'hull' is not one of"),
         (("cube.stl", "--max-memory", "lots"), "'lots' is no number of bytes"),
         (("cube.stl", "--max-memory", "-5"), "'-5' is no number of bytes"),
@@ -199,6 +205,64 @@ def test_build_keeps_to_its_memory(here, obbtree, limit, code):
 
     assert ended.code == code
     assert (here / "cube.obbt").exists() == (code == 0)
+
+
+def test_build_over_its_memory_names_the_mesh_as_it_was_written(here, obbtree):
+    ended = obbtree("build", here / "cube.stl", "--max-memory", 1)
+
+    assert ended.err.startswith(f"error: {here / 'cube.stl'}: a build over 12 triangles needs")
+
+
+@pytest.mark.parametrize(
+    "output", ["cube.stl", "./cube.stl", "link.stl", "hard.stl", "touching.obj"]
+)
+def test_build_never_replaces_a_mesh_by_its_tree(here, obbtree, output):
+    (here / "link.stl").symlink_to("cube.stl")
+    (here / "hard.stl").hardlink_to(here / "cube.stl")
+    before = {path.name: path.read_bytes() for path in here.iterdir()}
+    meshes = ("cube.stl", "touching.obj") if output == "touching.obj" else ("cube.stl",)
+
+    ended = obbtree("build", *meshes, "-o", output, "--force")
+
+    assert ended.code == 2
+    assert len(meshes) == 2 or "would be lost; write to another file" in ended.err
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == before
+
+
+def test_build_into_a_folder_keeps_an_input_of_that_name(here, obbtree):
+    (here / "cube.obbt").write_bytes((here / "touching.obj").read_bytes())
+    before = (here / "cube.obbt").read_bytes()
+
+    ended = obbtree("build", "cube.stl", "cube.obbt", "--force")
+
+    assert ended.code == 2
+    assert (here / "cube.obbt").read_bytes() == before
+
+
+def test_build_where_every_mesh_fails_is_one_document_all_the_same(here, obbtree):
+    ended = obbtree("build", "gone.stl", "lost.obj", "--json")
+
+    assert ended.code == 3
+    assert [file["output"] for file in ended.json["result"]["files"]] == [None, None]
+    assert ended.json["result"]["errors"] == [
+        {"path": name, "error": "no such file", "where": name, "remedy": "check the path"}
+        for name in ("gone.stl", "lost.obj")
+    ]
+    assert [json.loads(line)["where"] for line in ended.err.splitlines()] == [
+        "gone.stl",
+        "lost.obj",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("bad", "note"),
+    [
+        (("gone.stl",), "note: 1 of 2 trees was not built"),
+        (("gone.stl", "lost.obj"), "note: 2 of 3 trees were not built"),
+    ],
+)
+def test_build_counts_what_was_not_built(here, obbtree, bad, note):
+    assert obbtree("build", "cube.stl", *bad).err.splitlines()[-1] == note
 
 
 def test_build_quiet_says_nothing(here, obbtree):

@@ -135,3 +135,12 @@ def test_info_table_shows_names_as_they_are(here, obbtree):
     (here / name).write_text(obj(cube()))
 
     assert f"{name} (mesh)" in obbtree("info", name).out
+
+
+def test_info_never_replaces_what_it_reads(here, obbtree):
+    before = (here / "cube.stl").read_bytes()
+
+    ended = obbtree("info", "cube.stl", "-o", "cube.stl")
+
+    assert ended.code == 2
+    assert (here / "cube.stl").read_bytes() == before
