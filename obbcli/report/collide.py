@@ -129,6 +129,8 @@ def _built(stats: Record, side: str) -> str:
 
 def _pairs_table(result: Record) -> Table:
     pairs = result["pairs"]
+    if not pairs:
+        return Table([], title="no pairs of triangles intersect")
     cut = "" if result["pairs_complete"] else ", more exist: see --limit"
     title = f"{count(len(pairs))} intersecting pairs of triangles{cut}"
     return Table([(str(i), str(j)) for i, j in pairs], ("triangle of A", "triangle of B"), title)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 # rich takes 0.2 ms a row, and nobody looks at the layout of a list this long.
 _LONG = 1000
 _GAP = "   "
+# Names folded to fewer letters a line than this cannot be read.
+_FOLDED = 12
 
 
 class Table(NamedTuple):
@@ -48,27 +50,60 @@ def draw(tables: Iterable[Table], file: TextIO) -> None:
             file.write("\n")
         if console is None or len(table.rows) > _LONG:
             file.writelines(line.rstrip() + "\n" for line in _lines(table, file))
-        else:
+        elif not table.rows:
+            console.print(table.title, style="bold")
+        elif table.columns is None or _least_width(table) <= console.width:
             _draw_rich(table, console)
+        else:
+            # Too narrow for the numbers of one row side by side: a list a row.
+            lists = [Table(list(zip(table.columns, row, strict=True))) for row in table.rows]
+            draw([lists[0]._replace(title=table.title), *lists[1:]], file)
 
 
 def _lines(table: Table, file: TextIO) -> Iterator[str]:
     """Yield a table's lines: names flush left, and numbers flush right under headings."""
     if table.title:
         yield table.title
-    rows = [*([table.columns] if table.columns else []), *table.rows]
-    widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
+    if not table.rows:
+        return
+    widths = _widths(table)
     if table.columns is None:
         for name, value in table.rows:
-            yield f"{name:<{widths[0]}}  {value}"
+            yield f"{name}{' ' * (widths[0] - _width(name))}  {value}"
         return
     rule = "─" if (file.encoding or "utf-8").lower().startswith("utf") else "-"
-    sides = ["<" if index < table.name_count else ">" for index in range(len(widths))]
-    for number, row in enumerate(rows):
-        cells = zip(row, sides, widths, strict=True)
-        yield _GAP.join(f"{cell:{side}{width}}" for cell, side, width in cells)
+    for number, row in enumerate((table.columns, *table.rows)):
+        cells = []
+        for index, cell in enumerate(row):
+            space = " " * (widths[index] - _width(cell))
+            cells.append(cell + space if index < table.name_count else space + cell)
+        yield _GAP.join(cells)
         if number == 0:
             yield rule * (sum(widths) + len(_GAP) * (len(widths) - 1))
+
+
+def _widths(table: Table) -> list[int]:
+    """Return how many columns of a terminal each column takes."""
+    rows = [*([table.columns] if table.columns else []), *table.rows]
+    return [max(map(_width, cells)) for cells in zip(*rows, strict=True)]
+
+
+def _least_width(table: Table) -> int:
+    """Return what a table needs at least: numbers whole, names folded to a few letters."""
+    widths = _widths(table)
+    names = [min(width, _FOLDED) for width in widths[: table.name_count]]
+    return sum(names) + sum(widths[table.name_count :]) + len(_GAP) * (len(widths) - 1)
+
+
+def _width(text: str) -> int:
+    """Return how many columns of a terminal a text takes: wide letters take two."""
+    if text.isascii():
+        return len(text)
+    from unicodedata import combining, east_asian_width
+
+    return sum(
+        0 if combining(letter) else 2 if east_asian_width(letter) in "WF" else 1 for letter in text
+    )
 
 
 def _console(file: TextIO) -> Console:

@@ -99,6 +99,13 @@ def test_collide_shows_pairs_in_a_table(here, obbtree):
     assert [[int(n) for n in line.split()] for line in lines[start + 3 :]] == all_pairs((1, 0, 0))
 
 
+def test_collide_says_that_there_are_no_pairs(here, obbtree):
+    ended = obbtree("collide", "cube.stl", "apart.obj", "--all-pairs")
+
+    assert ended.out.endswith("\n\nno pairs of triangles intersect\n")
+    assert obbtree("collide", "cube.stl", "apart.obj", "--all-pairs", "-q").out == ""
+
+
 def test_collide_limit_cuts_the_list_and_says_so(here, obbtree):
     ended = obbtree("collide", "cube.stl", "touching.obj", "--all-pairs", "--limit", 3, "--json")
 
