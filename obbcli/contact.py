@@ -108,7 +108,8 @@ class Query:
     ) -> FirstContact:
         """Go on for so many queue pops or seconds, and return what is known then.
 
-        `Status.UNRESOLVED` where the answer is not complete; its `time_bounds[0]` is proven.
+        `Status.UNRESOLVED` where the answer is not complete, or bodies turn too fast to be followed
+        in doubles; its `time_bounds[0]` is proven.
         Signals are looked at every few milliseconds.
 
         Args:
@@ -191,7 +192,7 @@ class Query:
     def _answer(self) -> FirstContact:
         if self._at_start.is_contact:
             return self._contact_at_start()
-        if not self._is_finished:
+        if not self._is_finished or (self._moving is not None and self._moving.has_given_up):
             lo = self.lower_bound
             return FirstContact(
                 status=Status.UNRESOLVED, time=lo, time_bounds=(lo, None), stats=self._stats()

@@ -81,6 +81,7 @@ void bind_contact_query(nb::module_& m) {
         .def("advance", &obb::ContactQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
         .def_prop_ro("lower_bound", &obb::ContactQuery::lower_bound)
+        .def_prop_ro("has_given_up", &obb::ContactQuery::has_given_up)
         .def("contact", &contact_of)
         .def("place", &place_of)
         .def("counts", [](const obb::ContactQuery& q) {

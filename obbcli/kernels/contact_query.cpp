@@ -29,6 +29,10 @@ constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
 constexpr std::uint64_t kStallPops = 2000;
 // And is looked at so many tolerances later itself.
 constexpr double kStallReach = 0x1p12;
+// Beyond this an angle in twice the digits of a double says nothing any more.
+constexpr double kMostRadians = 0x1p50;
+// Of the bodies' size: what rounding must at least tell apart for a stall to mean a contact.
+constexpr double kSameDistance = 0x1p-16;
 
 } // namespace
 
@@ -38,6 +42,10 @@ ContactQuery::ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& s
     : a_(a, pose_a, screw_a), b_(b, pose_b, screw_b), options_(options) {
     set_units();
     is_translation_ = a_.spin().is_still() && b_.spin().is_still();
+    if ((a_.spin().speed() + b_.spin().speed()) * duration_ > kMostRadians) {
+        give_up(0);
+        return;
+    }
     push({0, a.root(), b.root()});
 }
 
@@ -160,12 +168,19 @@ void ContactQuery::finish(std::optional<Contact> contact) {
     queue_.clear();
 }
 
+// A pair that is apart, but turns too fast for a step that a double can tell from none.
+void ContactQuery::give_up(double time) {
+    finish(std::nullopt);
+    lower_bound_ = std::min(time, lower_bound_);
+    has_given_up_ = true;
+}
+
 // Rounding hides when exactly a stalled pair touches. It may be seen to intersect a little later;
 // else all that can be said is how near it is.
 void ContactQuery::finish_stalled() {
     const Entry entry{stall_->time, stall_->a, stall_->b};
-    for (double later = time_tolerance_; later <= kStallReach * time_tolerance_; later *= 2) {
-        const double time = std::min(entry.time + later, duration_);
+    for (double reach = 1; reach <= kStallReach; reach *= 2) {
+        const double time = std::min(entry.time + reach * time_tolerance_, duration_);
         if (surely_intersect_at(entry, time)) {
             finish(Contact{entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
             return;
@@ -173,6 +188,10 @@ void ContactQuery::finish_stalled() {
     }
     Vec3 direction;
     const double distance = distance_at(entry, entry.time, direction);
+    if (distance - options_.clearance > kSameDistance * (a_.extent() + b_.extent())) {
+        give_up(entry.time); // a pivot far away, say: rounding is larger than the bodies
+        return;
+    }
     finish(
         Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, distance, 0});
 }
@@ -254,6 +273,10 @@ void ContactQuery::meet_boxes(const Entry& entry) {
         push({*time, entry.a, entry.b});
         return;
     }
+    if (time_apart(a, b, now) > 0) {
+        give_up(entry.time);
+        return;
+    }
     // Boxes that no face axis separates may be apart still, by no more than their diagonals.
     const double sizes = norm(a.half_extents) + norm(b.half_extents);
     const double bound = std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * now.absolute, length_exponent_);
@@ -314,12 +337,14 @@ void ContactQuery::meet_triangles(const Entry& entry) {
     if (!time) {
         return;
     }
-    const bool is_near = !(*time - entry.time > time_tolerance_);
+    const bool is_near = !(*time - entry.time > time_tolerance_) || step.gap <= distance_tolerance_;
     if (is_near && prove_contact(entry)) {
         return;
     }
     if (*time > entry.time) {
         push({*time, entry.a, entry.b});
+    } else if (step.gap > 4 * triangle_error(a, b) + clearance_) {
+        give_up(entry.time);
     } else if (!stall_ || entry.time < stall_->time) {
         stall_ = Stall{entry.time, entry.a, entry.b, counts_.pops};
     }

@@ -68,7 +68,8 @@ class ContactQuery {
 
     // No contact in [0, lower_bound()): proven at any moment; the duration when proven apart.
     [[nodiscard]] double lower_bound() const;
-    [[nodiscard]] bool is_finished() const { return is_finished_; }
+    // The motion is too fast to be followed in doubles: nothing is known beyond lower_bound().
+    [[nodiscard]] bool has_given_up() const { return has_given_up_; }
     [[nodiscard]] const std::optional<Contact>& contact() const { return contact_; }
     // Where the contact is, at its `low`; only for a query that found one.
     [[nodiscard]] ContactPlace place();
@@ -109,6 +110,7 @@ class ContactQuery {
     [[nodiscard]] double distance_at(const Entry& entry, double time, Vec3& direction);
     [[nodiscard]] bool has_ended();
     void finish_stalled();
+    void give_up(double time);
     void finish(std::optional<Contact> contact);
     [[nodiscard]] ContactPlace place_of_triangles();
     [[nodiscard]] ContactPlace place_of_boxes();
@@ -131,6 +133,7 @@ class ContactQuery {
     std::optional<Contact> contact_;
     double lower_bound_ = 0;
     bool is_finished_ = false;
+    bool has_given_up_ = false;
     ContactQueryCounts counts_;
 };
 

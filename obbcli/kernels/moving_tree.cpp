@@ -44,6 +44,7 @@ MovingTree::MovingTree(const TreeView& tree, const Pose& pose, const Screw& scre
     if (spin_.is_still()) {
         screw_.pivot = ball.center;
     }
+    extent_ = ball.radius;
     reach_ = norm_1(ball.center - screw_.pivot) + ball.radius;
 }
 

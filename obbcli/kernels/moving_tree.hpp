@@ -18,6 +18,8 @@ class MovingTree {
 
     // Bounds the distance of any point from the pivot, mesh units.
     [[nodiscard]] double reach() const { return reach_; }
+    // A radius that holds the body, mesh units.
+    [[nodiscard]] double extent() const { return extent_; }
     [[nodiscard]] const Screw& screw() const { return screw_; }
     void set_units(int length_exponent, int time_exponent);
 
@@ -46,7 +48,7 @@ class MovingTree {
     Pose pose_;
     Screw screw_;
     Spin spin_;
-    double reach_ = 0;
+    double reach_ = 0, extent_ = 0;
     double box_error_ = 0;
     int length_exponent_ = 0;
     double node_scale_ = 1;

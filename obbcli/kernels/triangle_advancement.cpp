@@ -85,15 +85,17 @@ class TriangleAxes {
             return;
         }
         const Vec3 n = best_.normal;
-        consider({attached<true>(n), best_.gap, n});
-        consider({attached<false>(n), best_.gap, n});
+        consider({attached<true>(n), 0, n});
+        consider({attached<false>(n), 0, n});
     }
 
   private:
     void consider(const TriangleStep& step) {
+        const double gap = larger(best_.gap, step.gap);
         if (step.time > best_.time) {
             best_ = step;
         }
+        best_.gap = gap;
     }
 
     [[nodiscard]] static double across(const Spin& spin, Vec3 n) {
@@ -214,48 +216,43 @@ TriangleStep time_apart(const SpinningTriangle& a, const SpinningTriangle& b,
     return axes.best();
 }
 
-// An error d in the points turns the product L of two edges by at most 2 d (|e| + |f|) + 4 d^2,
-// which moves projections relative to a point of the pair by that times their size; their own error
-// adds 2 d |L|, and rounding 32 u |e| |f| size. All norms are 1-norms.
-bool surely_intersect(const Triangle& a, const Triangle& b, double d) {
-    const Vec3 origin = a[0];
-    std::array<Vec3, 3> p, q;
-    double size = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        p[k] = a[k] - origin;
-        q[k] = b[k] - origin;
-        size = larger(size, larger(norm_1(p[k]), norm_1(q[k])));
-    }
-    const auto e = edges_of(a), f = edges_of(b);
-    const auto overlaps = [&](Vec3 u, Vec3 v) {
-        const Vec3 n = cross(u, v);
-        const double nu = norm_1(u), nv = norm_1(v);
-        const double error =
-            (4 * d * (nu + nv + 2 * d) + 32 * kUnitRoundoff * nu * nv) * size + 4 * d * nu * nv;
-        const double pa[3] = {dot(n, p[0]), dot(n, p[1]), dot(n, p[2])};
-        const double pb[3] = {dot(n, q[0]), dot(n, q[1]), dot(n, q[2])};
-        const double ahead = smallest(pb[0], pb[1], pb[2]) - largest(pa[0], pa[1], pa[2]);
-        const double behind = smallest(pa[0], pa[1], pa[2]) - largest(pb[0], pb[1], pb[2]);
-        return larger(ahead, behind) < -error;
-    };
-    // A triangle with two equal corners is a segment: it has one edge, and no normal of its own.
-    const auto has_normal = [](const std::array<Vec3, 3>& edges) {
-        return std::none_of(edges.begin(), edges.end(), [](Vec3 v) { return v == Vec3{0, 0, 0}; });
-    };
-    const bool normal_a = has_normal(e), normal_b = has_normal(f);
-    if ((!normal_a && !normal_b) || (normal_a && !overlaps(e[0], e[1])) ||
-        (normal_b && !overlaps(f[0], f[1]))) {
+namespace {
+
+// The side of the plane through a, b, c that d is on: +1 or -1, or 0 where an error of `e` in each
+// point, or rounding, leaves it open. A triple product of differences that are off by 2 e each is
+// off by 2 e times the sum of the products of their pairs, and higher orders that the factor
+// covers.
+int sure_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double e) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    const double nu = norm_1(u) + 2 * e, nv = norm_1(v) + 2 * e, nw = norm_1(w) + 2 * e;
+    const double error =
+        4 * e * (nu * nv + nv * nw + nw * nu) + 32 * kUnitRoundoff * nu * nv * nw + 0x1p-900;
+    const double value = dot(cross(u, v), w);
+    return value > error ? 1 : value < -error ? -1 : 0;
+}
+
+bool surely_pierces(const Vec3& p, const Vec3& q, const Triangle& t, double e) {
+    const int above = sure_side(t[0], t[1], t[2], p, e);
+    if (above == 0 || sure_side(t[0], t[1], t[2], q, e) != -above) {
         return false;
     }
-    for (const Vec3& u : e) {
-        for (const Vec3& v : f) {
-            const bool is_edge = u != Vec3{0, 0, 0} && v != Vec3{0, 0, 0};
-            if (is_edge && !overlaps(u, v)) {
-                return false;
-            }
+    // The line passes all three edges on one side.
+    const int turn = sure_side(p, q, t[0], t[1], e);
+    return turn != 0 && sure_side(p, q, t[1], t[2], e) == turn &&
+           sure_side(p, q, t[2], t[0], e) == turn;
+}
+
+} // namespace
+
+// Triangles that overlap by more than the error show an edge of one that surely pierces the other.
+bool surely_intersect(const Triangle& a, const Triangle& b, double error) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (surely_pierces(a[k], a[(k + 1) % 3], b, error) ||
+            surely_pierces(b[k], b[(k + 1) % 3], a, error)) {
+            return true;
         }
     }
-    return true;
+    return false;
 }
 
 } // namespace obb

@@ -22,7 +22,7 @@ struct SpinningTriangle {
 // The axis of the longest step, and what it separates.
 struct TriangleStep {
     double time = 0;      // proven apart for so long from now on; 0 where nothing is proven
-    double gap = 0;       // between the projections on `normal`, before any error is taken off
+    double gap = 0;       // the widest between projections, before any error is taken off
     Vec3 normal{0, 0, 0}; // unit, from A to B
 };
 
@@ -32,8 +32,7 @@ struct TriangleStep {
 [[nodiscard]] TriangleStep time_apart(const SpinningTriangle& a, const SpinningTriangle& b,
                                       const MovingFrame& frame, Vec3 hint);
 
-// Whether the true triangles surely intersect, where each point is known to within `error`: every
-// axis of a complete set shows an overlap beyond what the error can do to it.
+// Whether the true triangles surely intersect, where each point is known to within `error`.
 [[nodiscard]] bool surely_intersect(const Triangle& a, const Triangle& b, double error);
 
 } // namespace obb
