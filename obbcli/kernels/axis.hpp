@@ -39,10 +39,10 @@ inline constexpr std::uint32_t kAllAxes = (1u << kAxisCount) - 1;
 }
 
 // What a projection on L says in doubles: the shapes' projections meet at time t if and only if
-// low <= speed * t <= high, where the true low and high are within `error` of these and the true
-// speed is within `speed_error`. L itself need not be known any better.
+// low <= speed * t <= high, where for every t in [0, duration] the true low - speed * t and
+// high - speed * t are within `error` of these. L itself need not be known any better.
 struct AxisBound {
-    double low, high, speed, error, speed_error;
+    double low, high, speed, error;
 };
 
 } // namespace obb

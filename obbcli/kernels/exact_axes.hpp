@@ -143,10 +143,11 @@ bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, const WideSpan<N
     }
 }
 
-// Whether the closed shapes have a point in common.
+// Whether the closed shapes have a point in common, when no axis outside `unsure` separates them.
 template <std::size_t N>
-[[nodiscard]] bool shapes_intersect(const ExactShape<N>& a, const ExactShape<N>& b) {
-    return !visit_axes(a, b, span_of_edges(a, b), kAllAxes, [&](AxisId, const auto& axis) {
+[[nodiscard]] bool shapes_intersect(const ExactShape<N>& a, const ExactShape<N>& b,
+                                    std::uint32_t unsure) {
+    return !visit_axes(a, b, span_of_edges(a, b), unsure, [&](AxisId, const auto& axis) {
         const auto on_a = project(a, axis);
         const auto on_b = project(b, axis);
         return on_a.high < on_b.low || on_b.high < on_a.low;

@@ -63,19 +63,38 @@ template <typename A, typename B>
                            [&](const auto& pair) { return ExactContact(pair).solve(selection); });
 }
 
+// Asks with the error that any boxes may have, and in doubt with that of these.
+template <bool kMoving, typename A, typename B, typename Sat>
+[[nodiscard]] Sat asked(const A& a, const B& b, const LinearMotion& m, const Sat& fresh) {
+    const Vec3 velocity = kMoving ? m.velocity_b - m.velocity_a : Vec3{0, 0, 0};
+    Sat sat = fresh;
+    visit_bounds<kMoving>(a, b, velocity, m.duration, kAxisError, sat);
+    if (sat.verdict() == Verdict::kUnsure) {
+        sat = fresh;
+        visit_bounds<kMoving>(a, b, velocity, m.duration, axis_error(a, b), sat);
+    }
+    return sat;
+}
+
 template <typename A, typename B>
 [[nodiscard]] PairVerdict test_still(const A& a, const B& b) {
-    StillSat sat;
-    visit_bounds<false>(a, b, Vec3{0, 0, 0}, sat);
+    const auto sat = asked<false>(a, b, LinearMotion{}, StillSat{});
     if (sat.verdict() != Verdict::kUnsure) {
         return {sat.verdict() == Verdict::kIntersecting, false};
     }
-    return {meets_exactly(a, b, LinearMotion{}, AxisSelection{}), true};
+    return {meets_exactly(a, b, LinearMotion{}, AxisSelection{sat.unsure(), 0}), true};
 }
 
 [[nodiscard]] PairVerdict test_still(const Triangle& a, const Triangle& b) {
     const TriangleVerdict verdict = test_triangles(a, b);
     return {verdict.intersects, verdict.exact};
+}
+
+template <typename A, typename B>
+[[nodiscard]] AxisRecorder recorded(const A& a, const B& b, const LinearMotion& m) {
+    AxisRecorder axes(m.duration);
+    visit_bounds<true>(a, b, m.velocity_b - m.velocity_a, m.duration, axis_error(a, b), axes);
+    return axes;
 }
 
 template <typename A, typename B>
@@ -86,15 +105,11 @@ template <typename A, typename B>
     if (is_still(m)) {
         return test_still(a, b);
     }
-    const Vec3 velocity = m.velocity_b - m.velocity_a;
-    MovingSat sat(m.duration);
-    visit_bounds<true>(a, b, velocity, sat);
+    const auto sat = asked<true>(a, b, m, MovingSat(m.duration));
     if (sat.verdict() != Verdict::kUnsure) {
         return {sat.verdict() == Verdict::kIntersecting, false};
     }
-    AxisRecorder axes(m.duration);
-    visit_bounds<true>(a, b, velocity, axes);
-    return {meets_exactly(a, b, m, axes.selection()), true};
+    return {meets_exactly(a, b, m, recorded(a, b, m).selection()), true};
 }
 
 // An exact face axis of a box is a product of the other two axes: its own axis up to sign.
@@ -125,8 +140,8 @@ template <typename A, typename B>
                                                       const LinearMotion& m) {
     AxisSelection selection;
     if (in_filter_range(a, b, m)) {
-        AxisRecorder axes(m.duration);
-        if (visit_bounds<true>(a, b, m.velocity_b - m.velocity_a, axes)) {
+        const AxisRecorder axes = recorded(a, b, m);
+        if (axes.is_separated()) {
             return std::nullopt;
         }
         selection = axes.selection();

@@ -2,9 +2,13 @@
 
 #include "exact_axes.hpp"
 #include "extremes.hpp"
+#include "sat.hpp"
+#include "sat_triangle_triangle.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -98,20 +102,16 @@ struct Sides {
     return true;
 }
 
-struct Filter {
-    std::array<Vec3, 6> points; // relative to a[0]
-    double extent;
-
-    Filter(const Triangle& a, const Triangle& b)
-        : points{Vec3{0, 0, 0}, a[1] - a[0], a[2] - a[0], b[0] - a[0], b[1] - a[0], b[2] - a[0]},
-          extent(0) {
-        for (const Vec3& p : points) {
-            extent = larger(extent, reach(p));
-        }
+// Whether an axis in the plane of either triangle separates them: coplanar ones have no other.
+// The axis is taken as it is, so only the projections round: gamma_4 each.
+[[nodiscard]] bool separated_in_plane(const Triangle& a, const Triangle& b) {
+    const std::array<Vec3, 6> points{Vec3{0, 0, 0}, a[1] - a[0], a[2] - a[0],
+                                     b[0] - a[0],   b[1] - a[0], b[2] - a[0]};
+    double extent = 0;
+    for (const Vec3& p : points) {
+        extent = larger(extent, reach(p));
     }
-
-    // The axis is taken as it is, so only the projections round: gamma_4 each.
-    [[nodiscard]] bool separated_along(const Vec3& axis) const {
+    const auto separated_along = [&](const Vec3& axis) {
         const double error = kTripleError * norm_1(axis) * extent + kTiny;
         std::array<double, 6> s{};
         for (std::size_t k = 0; k < 6; ++k) {
@@ -122,29 +122,22 @@ struct Filter {
         const double low_b = smallest(s[3], s[4], s[5]);
         const double high_b = largest(s[3], s[4], s[5]);
         return low_b - high_a > error || low_a - high_b > error;
-    }
-
-    [[nodiscard]] bool separated() const {
-        const std::array<Vec3, 3> e{points[1], points[2] - points[1], points[2]};
-        const std::array<Vec3, 3> f{points[4] - points[3], points[5] - points[4],
-                                    points[5] - points[3]};
-        const Vec3 normal_a = cross(e[0], e[2]);
-        const Vec3 normal_b = cross(f[0], f[2]);
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (separated_along(cross(normal_a, e[i])) || separated_along(cross(normal_b, f[i]))) {
+    };
+    for (const Triangle& t : {a, b}) {
+        const std::array<Vec3, 3> edges{t[1] - t[0], t[2] - t[1], t[2] - t[0]};
+        const Vec3 normal = cross(edges[0], edges[2]);
+        for (const Vec3& edge : edges) {
+            if (separated_along(cross(normal, edge))) {
                 return true;
             }
-            for (std::size_t j = 0; j < 3; ++j) {
-                if (separated_along(cross(e[i], f[j]))) {
-                    return true;
-                }
-            }
         }
-        return false;
     }
-};
+    return false;
+}
 
-[[nodiscard]] bool triangles_intersect_exactly(const Triangle& a, const Triangle& b) {
+// Over the axes that may yet separate; where all edges lie in a plane, over all of its axes.
+[[nodiscard]] bool triangles_intersect_exactly(const Triangle& a, const Triangle& b,
+                                               std::uint32_t unsure) {
     DigitRange digits;
     for (std::size_t k = 0; k < 3; ++k) {
         digits.include(a[k]);
@@ -153,7 +146,7 @@ struct Filter {
     return with_width(digits.bits(), [&](auto width) {
         constexpr std::size_t kWidth = decltype(width)::value;
         return shapes_intersect(exact_shape<kWidth>(a, a[0], digits.low),
-                                exact_shape<kWidth>(b, a[0], digits.low));
+                                exact_shape<kWidth>(b, a[0], digits.low), unsure);
     });
 }
 
@@ -168,7 +161,7 @@ TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
         return {false, false};
     }
     if (!within_range(a, b)) {
-        return {triangles_intersect_exactly(a, b), true};
+        return {triangles_intersect_exactly(a, b, kAllAxes), true};
     }
     const Sides sides_b = sides(a, b);
     if (sides_b.all_same()) {
@@ -183,10 +176,11 @@ TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
             return {*overlap, false};
         }
     }
-    if (Filter(a, b).separated()) {
+    StillSat sat;
+    if (visit_bounds<false>(a, b, Vec3{0, 0, 0}, 0, 0, sat) || separated_in_plane(a, b)) {
         return {false, false};
     }
-    return {triangles_intersect_exactly(a, b), true};
+    return {triangles_intersect_exactly(a, b, sat.unsure()), true};
 }
 
 bool triangles_intersect(const Triangle& a, const Triangle& b) {

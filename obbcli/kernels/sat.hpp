@@ -32,39 +32,43 @@ enum class Verdict : std::uint8_t { kSeparated, kIntersecting, kUnsure };
 // Shapes at rest. Takes bounds until an axis separates for certain.
 class StillSat {
   public:
-    [[nodiscard]] bool operator()(AxisId, const AxisBound& axis) {
+    [[nodiscard, gnu::always_inline]] bool operator()(AxisId id, const AxisBound& axis) {
         if (axis.low > axis.error || axis.high < -axis.error) {
             separated_ = true;
             return true;
         }
         any_ = true;
-        sure_ &= axis.low < -axis.error && axis.high > axis.error;
+        const bool sure = axis.low < -axis.error && axis.high > axis.error;
+        unsure_ |= static_cast<std::uint32_t>(!sure) << axis_index(id);
         return false;
     }
 
     [[nodiscard]] Verdict verdict() const {
-        return separated_      ? Verdict::kSeparated
-               : any_ && sure_ ? Verdict::kIntersecting
-                               : Verdict::kUnsure;
+        return separated_             ? Verdict::kSeparated
+               : any_ && unsure_ == 0 ? Verdict::kIntersecting
+                                      : Verdict::kUnsure;
     }
+    // The axes that may yet separate, a bit each by axis_index.
+    [[nodiscard]] std::uint32_t unsure() const { return unsure_; }
 
   private:
     bool separated_ = false;
     bool any_ = false;
-    bool sure_ = true;
+    std::uint32_t unsure_ = 0;
 };
 
-// Bounds on when one axis begins and ceases to allow contact.
+// Bounds on when one axis begins and ceases to allow contact within [0, duration]; what lies
+// outside of that is outside for certain.
 struct AxisTimes {
     double entry_low, entry_high, exit_low, exit_high;
 };
 
-[[nodiscard]] inline AxisTimes axis_times(const AxisBound& axis, double duration) {
+[[nodiscard, gnu::always_inline]] inline AxisTimes axis_times(const AxisBound& axis,
+                                                              double duration) {
     constexpr double kForever = std::numeric_limits<double>::infinity();
     const double size = std::fabs(axis.speed);
-    if (size <= 4 * axis.speed_error) {
-        // The direction along the axis is uncertain, or too slow to divide by.
-        const double slack = axis.error + duration * (size + axis.speed_error);
+    if (size <= kUnderflow) {
+        const double slack = axis.error + duration * size;
         if (axis.low > slack || axis.high < -slack) {
             return {kForever, kForever, -kForever, -kForever};
         }
@@ -73,15 +77,13 @@ struct AxisTimes {
         }
         return {-kForever, kForever, -kForever, kForever};
     }
+    // Where a linear function of time is 1.5 errors beyond zero at t and more so at one end of the
+    // interval, the true one has that sign from t to there, whatever the sign of its true speed.
     const double pace = 1 / size;
     const double entry = (axis.speed > 0 ? axis.low : -axis.high) * pace;
     const double exit = (axis.speed > 0 ? axis.high : -axis.low) * pace;
-    // |dt| <= (E + |t| E_w) / (|w| - E_w), with E_w <= |w| / 4, and three roundings of t.
-    const double base = 1.5 * axis.error * pace;
-    const double relative = 1.5 * axis.speed_error * pace + 8 * kUnitRoundoff;
-    const double entry_error = base + relative * std::fabs(entry);
-    const double exit_error = base + relative * std::fabs(exit);
-    return {entry - entry_error, entry + entry_error, exit - exit_error, exit + exit_error};
+    const double error = 1.5 * axis.error * pace + 8 * kUnitRoundoff * duration;
+    return {entry - error, entry + error, exit - error, exit + error};
 }
 
 // Shapes in motion. Takes bounds until the entries and exits leave no time for contact.
@@ -131,6 +133,8 @@ class AxisRecorder {
         return sat_.is_separated();
     }
 
+    [[nodiscard]] bool is_separated() const { return sat_.is_separated(); }
+
     // The axes that can have the latest entry or the earliest exit, or a gap of zero at the first
     // time. Axes that were not seen have no direction.
     [[nodiscard]] AxisSelection selection() const {
@@ -144,11 +148,11 @@ class AxisRecorder {
             if (times_[k].entry_high >= all.entry_low || times_[k].exit_low <= all.exit_high) {
                 selection.binding |= 1u << k;
             }
+            // The first time is between the greatest lower bound and `latest`.
             const AxisBound& axis = bounds_[k];
-            const double speed = std::fabs(axis.speed) + axis.speed_error;
-            const double slack =
-                2 * (axis.error + latest * axis.speed_error + (latest - all.entry_low) * speed) +
-                8 * kUnitRoundoff * latest * speed;
+            const double size = std::fabs(axis.speed);
+            const double slack = 2 * (axis.error + (latest - all.entry_low) * size) +
+                                 8 * kUnitRoundoff * latest * size;
             const double way = latest * axis.speed;
             if (std::fabs(way - axis.low) <= slack || std::fabs(way - axis.high) <= slack) {
                 selection.near |= 1u << k;

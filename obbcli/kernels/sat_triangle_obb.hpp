@@ -14,10 +14,11 @@ namespace obb {
 
 // Legend: y = A^T (U - C) takes the triangle into the box's coordinates, where A_i are the
 // coordinate axes; e_j = y_{j+1} - y_j (cyclic), n = e_0 x e_1, w = B's velocity less A's.
-// Coordinates are off by less than `blur`; a product of two edges, so off by 2 blur, with a third
-// factor by less than 6 blur times the other two sizes.
+// Coordinates, at any time until the end, are off by less than `blur`; a product of two edges, so
+// off by 2 blur, with a third factor by less than 6 blur times the other two sizes.
 template <bool kMoving, typename Visit>
-bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&& visit) {
+bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, double duration,
+                  double axis_error, Visit&& visit) {
     const Vec3 h = a.half_extents;
     std::array<Vec3, 3> y;
     double reach = 0;
@@ -27,32 +28,29 @@ bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&&
         reach = larger(reach, norm_1(d));
     }
     reach += h.x + h.y + h.z;
-    const double blur = kAxisError * reach + kUnderflow;
     Vec3 w{0, 0, 0};
-    double w_blur = 0;
     if constexpr (kMoving) {
         w = {dot(a.axes[0], velocity), dot(a.axes[1], velocity), dot(a.axes[2], velocity)};
-        w_blur = kAxisError * norm_1(velocity) + kUnderflow;
+        reach += duration * norm_1(velocity);
     }
+    const double blur = axis_error * reach + kUnderflow;
 
     const std::array<Vec3, 3> e{y[1] - y[0], y[2] - y[1], y[0] - y[2]};
     const Vec3 n = cross(e[0], e[1]);
-    const double w_size = norm_1(w);
     {
         const double q = dot(n, y[0]);
         const double radius = dot(abs(n), h);
         const double size = norm_1(e[0]) + norm_1(e[1]);
         const double error = 6 * blur * size * reach + kUnderflow;
-        const double speed_error = 6 * (blur * size * w_size + w_blur * size * size) + kUnderflow;
         if (visit({AxisKind::kFaceB, 0, 0},
-                  {-q - radius, radius - q, kMoving ? dot(n, w) : 0, error, speed_error})) {
+                  {-q - radius, radius - q, kMoving ? dot(n, w) : 0, error})) {
             return true;
         }
     }
     for (std::uint8_t i = 0; i < 3; ++i) {
         const double high = largest(y[0][i], y[1][i], y[2][i]);
         const double low = smallest(y[0][i], y[1][i], y[2][i]);
-        if (visit({AxisKind::kFaceA, i, i}, {-h[i] - high, h[i] - low, w[i], blur, w_blur})) {
+        if (visit({AxisKind::kFaceA, i, i}, {-h[i] - high, h[i] - low, w[i], blur})) {
             return true;
         }
     }
@@ -70,11 +68,10 @@ bool visit_bounds(const Obb& a, const Triangle& b, const Vec3& velocity, Visit&&
             const double q2 = l1 * opposite[i1] + l2 * opposite[i2];
             const double radius = h[i1] * std::fabs(l1) + h[i2] * std::fabs(l2);
             const double size = std::fabs(l1) + std::fabs(l2);
-            const double error = 4 * blur * (reach + size);
-            const double speed_error = 4 * (blur * w_size + w_blur * size) + kUnderflow;
+            const double error = 4 * blur * (reach + size) + kUnderflow;
             if (visit({AxisKind::kEdgeEdge, i, j},
                       {-radius - larger(q, q2), radius - smaller(q, q2),
-                       kMoving ? l1 * w[i1] + l2 * w[i2] : 0, error + kUnderflow, speed_error})) {
+                       kMoving ? l1 * w[i1] + l2 * w[i2] : 0, error})) {
                 return true;
             }
         }

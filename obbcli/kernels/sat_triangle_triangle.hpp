@@ -15,7 +15,8 @@ namespace obb {
 // E_1 and F_1 in sign and order), N = E_0 x E_1, M = F_0 x F_1, w = B's velocity less A's.
 // Every product below is a triple product of once rounded differences: gamma_8 times its permanent.
 template <bool kMoving, typename Visit>
-bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& visit) {
+bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, double duration,
+                  double /*axis_error*/, Visit&& visit) {
     constexpr double kError = 16 * kUnitRoundoff;
     const std::array<Vec3, 3> e{a[1] - a[0], a[2] - a[1], a[0] - a[2]};
     const std::array<Vec3, 3> f{b[1] - b[0], b[2] - b[1], b[0] - b[2]};
@@ -24,16 +25,15 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
     const Vec3 d = b[0] - a[0];
     const double reach = norm_1(d) + largest(e_size[0], e_size[1], e_size[2]) +
                          largest(f_size[0], f_size[1], f_size[2]);
-    const double w_size = norm_1(w);
+    // How far B's vertices are from A's until the end, and the error of a product per its size.
+    const double unit = kError * (reach + (kMoving ? duration * norm_1(w) : 0));
     const Vec3 n = cross(e[0], e[1]);
     const Vec3 m = cross(f[0], f[1]);
-    const double n_size = e_size[0] * e_size[1];
-    const double m_size = f_size[0] * f_size[1];
+    const double n_size = kError * (e_size[0] * e_size[1]);
+    const double m_size = kError * (f_size[0] * f_size[1]);
 
-    const auto bound = [&](const Vec3& axis, double low, double high, double size, double error) {
-        const double speed = kMoving ? dot(axis, w) : 0;
-        const double speed_error = kMoving ? kError * size * w_size + kUnderflow : 0;
-        return AxisBound{low, high, speed, error + kUnderflow, speed_error};
+    const auto bound = [&](const Vec3& axis, double low, double high, double error) {
+        return AxisBound{low, high, kMoving ? dot(axis, w) : 0, error + kUnderflow};
     };
     // Axis N: A at 0, B at N.D and the rest. Axis M: the other way round.
     const std::array<double, 3> nf{dot(n, f[0]), dot(n, f[1]), dot(n, f[2])};
@@ -42,8 +42,8 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
         const double q = dot(n, d);
         const double high = largest(q, q + nf[0], q - nf[2]);
         const double low = smallest(q, q + nf[0], q - nf[2]);
-        const double error = 3 * kError * n_size * reach;
-        if (visit({AxisKind::kFaceA, 0, 0}, bound(n, -high, -low, n_size, error))) {
+        const double error = 3 * unit * (e_size[0] * e_size[1]);
+        if (visit({AxisKind::kFaceA, 0, 0}, bound(n, -high, -low, error))) {
             return true;
         }
     }
@@ -51,8 +51,8 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
         const double q = dot(m, d);
         const double high = largest(0.0, me[0], -me[2]);
         const double low = smallest(0.0, me[0], -me[2]);
-        const double error = 3 * kError * m_size * reach;
-        if (visit({AxisKind::kFaceB, 0, 0}, bound(m, low - q, high - q, m_size, error))) {
+        const double error = 3 * unit * (f_size[0] * f_size[1]);
+        if (visit({AxisKind::kFaceB, 0, 0}, bound(m, low - q, high - q, error))) {
             return true;
         }
     }
@@ -68,10 +68,9 @@ bool visit_bounds(const Triangle& a, const Triangle& b, const Vec3& w, Visit&& v
             const double low_a = smaller(0.0, -nf[j]);
             const double high_b = q + larger(0.0, me[i]);
             const double low_b = q + smaller(0.0, me[i]);
-            const double size = e_size[i] * f_size[j];
-            const double error = kError * (size * reach + n_size * f_size[j] + m_size * e_size[i]);
+            const double error = f_size[j] * (e_size[i] * unit + n_size) + e_size[i] * m_size;
             if (visit({AxisKind::kEdgeEdge, i, j},
-                      bound(axis, low_a - high_b, high_a - low_b, size, error))) {
+                      bound(axis, low_a - high_b, high_a - low_b, error))) {
                 return true;
             }
         }
