@@ -19,6 +19,8 @@ SANITIZE_TESTS ?= $(filter-out %_oracles.py %_oracles_mesh.py %_scenes.py %_stra
 SHELL := /bin/sh
 .SHELLFLAGS := -eu -c
 .DELETE_ON_ERROR:
+# Two installations into one environment at a time would spoil it; ninja uses all cores by itself.
+.NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 .PHONY: help demo test check lint format-check types stub-check stub bench sanitize clean
