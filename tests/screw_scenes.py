@@ -40,6 +40,7 @@ class ScrewScene:
         status: of the true answer.
         time: the first contact, exact or to 40 digits; None where there is none.
         instant: whether the contact lasts but an instant, so that nothing after it proves it.
+        normal: of contact, from A to B, where B is a wall.
     """
 
     name: str
@@ -49,6 +50,7 @@ class ScrewScene:
     status: Status
     time: Any = None
     instant: bool = False
+    normal: Any = None
 
     @property
     def turns(self) -> float:
@@ -62,14 +64,15 @@ def against_plane(
 ) -> ScrewScene:
     """Return a body moving towards a thick wall whose near side is `normal . x = level`."""
     axis = int(np.argmax(np.abs(normal)))
-    low, high = np.full(3, -WALL * unit), np.full(3, WALL * unit)
+    # Of unequal sides, so that what lands in the middle misses the diagonals.
+    low, high = np.full(3, -WALL * unit), (WALL + np.arange(3.0)) * unit
     low[axis], high[axis] = sorted((normal[axis] * level, normal[axis] * (level + unit)))
     time = plane_time(body, normal, level, duration)
     status: Status = "separated" if time is None else "contact"
     if time == 0:
         status = "overlap_at_start"
     wall = Mover(*box(low, high))
-    return ScrewScene(name, body, wall, duration, status, time, instant=time == duration)
+    return ScrewScene(name, body, wall, duration, status, time, time == duration, normal)
 
 
 def rod(length: float = 2.0, half: float = 0.0625) -> Any:
@@ -146,7 +149,7 @@ def screws() -> Iterator[ScrewScene]:
         body = Mover(*blade, velocity=pitch * Z, spin=Z)
         status: Status = "contact" if meets else "separated"
         time = quarter if meets else None
-        yield ScrewScene(name, body, Mover(*fin), 2.0, status, time, instant=meets)
+        yield ScrewScene(name, body, Mover(*fin), 2.0, status, time, meets)
     pin = Mover(*box((1.0, -0.25, -0.25), (1.5, 0.25, 0.25)), velocity=0.5 * Z, spin=4 * Z)
     yield against_plane("pin_screws_into_plate", pin, Z, 1.25, 4.0)
     yield against_plane("pin_screws_short_of_plate", pin, Z, 2.25 + GAP, 4.0)

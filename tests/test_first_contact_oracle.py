@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles_screw import Mover, screw_first_contact
+from oracles_screw_sampling import sampled_overlap
+from screw_answers import ask, assert_bracket, assert_coherent, bounds
+from screw_random import KINDS, Kind, random_pair
+
+from obbcli import Status
+
+SEEDS = {"translating": 60, "one_turning": 40, "both_turning": 40}
+MANY = 400
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_random_pair_has_the_oracles_answer(kind: Kind) -> None:
+    statuses = []
+    for seed in range(SEEDS[kind]):
+        a, b = random_pair(kind, seed)
+        truth = screw_first_contact(a, b, 1.0)
+
+        answer = ask(a, b, 1.0)
+
+        statuses.append(answer.status)
+        assert answer.status == truth.status, seed
+        assert_coherent(answer, a, b, 1.0)
+        if truth.status == "contact":
+            assert answer.evidence == "intersecting", seed
+            assert_bracket(answer, truth.lo, truth.hi)
+    assert min(statuses.count(one) for one in (Status.CONTACT, Status.SEPARATED)) > 8
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_overlap_is_sampled_before_the_proven_time(kind: Kind) -> None:
+    hits = 0
+    for seed in range(1000, 1012):
+        a, b = random_pair(kind, seed)
+
+        answer = ask(a, b, 1.0)
+
+        free = 1.0
+        if answer.status is Status.CONTACT:
+            hits += 1
+            free = np.nextafter(float(bounds(answer)[0]), 0)
+        times = np.concatenate((np.linspace(0, free, 60), free * (1 - np.logspace(-15, -3, 12))))
+        assert sampled_overlap(a, b, 1.0, times) is None, seed
+    assert 0 < hits < 12
+
+
+def test_evidence_of_many_random_pairs_holds() -> None:
+    for seed in range(2000, 2000 + MANY):
+        kind = KINDS[seed % 3]
+        a, b = random_pair(kind, seed)
+
+        answer = ask(a, b, 1.0)
+
+        assert answer.status in {Status.CONTACT, Status.SEPARATED}, (kind, seed)
+        assert_coherent(answer, a, b, 1.0)
+
+
+@pytest.mark.parametrize("turns", [3, 30])
+def test_fast_turning_pair_has_the_oracles_answer(turns: int) -> None:
+    for seed in range(3000, 3006):
+        a, b = (faster(body, turns) for body in random_pair("one_turning", seed))
+        truth = screw_first_contact(a, b, 1.0)
+
+        answer = ask(a, b, 1.0)
+
+        assert answer.status == truth.status, seed
+        assert_coherent(answer, a, b, 1.0)
+        if truth.status == "contact":
+            assert_bracket(answer, truth.lo, truth.hi)
+
+
+def faster(body: Mover, turns: int) -> Mover:
+    """Return a body that turns so often, where it turns at all."""
+    speed = float(np.linalg.norm(body.spin))
+    spin = body.spin * (2 * np.pi * turns / speed) if speed else body.spin
+    pose = body.rotation, body.translation
+    return Mover(body.vertices, body.faces, *pose, body.velocity, spin, body.pivot)
