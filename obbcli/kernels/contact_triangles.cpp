@@ -1,0 +1,162 @@
+// What a contact query does where it has come down to two triangles.
+#include "contact_query.hpp"
+
+#include "closest_points.hpp"
+#include "pair_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obb {
+
+namespace {
+
+// A stalled pair is looked at so many tolerances later.
+constexpr double kStallReach = 0x1p12;
+// Of the bodies' size: what rounding must at least tell apart for a stall to mean a contact.
+constexpr double kSameDistance = 0x1p-16;
+
+} // namespace
+
+// Without turning, a pair's first contact is exact. Eberly 2008 §4.2.2.
+void ContactQuery::meet_in_translation(const Entry& entry) {
+    const LinearMotion motion{a_.screw().linear_velocity, b_.screw().linear_velocity,
+                              options_.duration};
+    ++counts_.triangle_tests;
+    const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
+    const PairVerdict verdict = test_pair(a, b, motion);
+    if (!verdict.intersects) {
+        counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
+        return;
+    }
+    ++counts_.exact_triangle_tests;
+    const std::optional<PairContact> found = obb::first_contact(a, b, motion);
+    const double high = std::ldexp(std::min(found->time_above, options_.duration), -time_exponent_);
+    if (exact_ && exact_->high <= high) {
+        return;
+    }
+    exact_ = Contact{std::ldexp(found->time_below, -time_exponent_),
+                     high,
+                     Evidence::kIntersecting,
+                     entry.a,
+                     entry.b,
+                     0,
+                     0};
+    // What cannot touch before is of no interest any more.
+    std::erase_if(queue_, [&](const Entry& e) { return e.time > high; });
+    std::make_heap(queue_.begin(), queue_.end(), LaterFirst{});
+}
+
+double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {
+    return relative_ * (a.size + b.size) + between_error_;
+}
+
+void ContactQuery::meet_triangles(const Entry& entry) {
+    set_time(entry.time);
+    ++counts_.triangle_tests;
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const MovingFrame now = frame(0, entry.time);
+    Vec3 direction{0, 0, 0};
+    TriangleStep step;
+    if (clearance_ == 0) {
+        step = time_apart(a, b, now, direction);
+    }
+    // The features' axes alone cannot prove two vertices further apart than they themselves show.
+    if (step.time == 0) {
+        (void)distance_at(entry, entry.time, direction);
+        step = time_apart(a, b, now, direction);
+    }
+    const std::optional<double> time = later(entry.time, step.time);
+    if (!time) {
+        return;
+    }
+    const bool is_near = !(*time - entry.time > time_tolerance_) || step.gap <= distance_tolerance_;
+    if (is_near && prove_contact(entry)) {
+        return;
+    }
+    if (*time > entry.time) {
+        push({*time, entry.a, entry.b});
+    } else if (step.gap > 4 * triangle_error(a, b) + clearance_) {
+        give_up(entry.time);
+    } else if (!stall_ || entry.time < stall_->time) {
+        stall_ = Stall{entry.time, entry.a, entry.b, counts_.pops};
+    }
+}
+
+// Looks for a proven contact a little later: at shrinking fractions of the tolerance, since a graze
+// is over soon. True where the pair needs no more attention.
+bool ContactQuery::prove_contact(const Entry& entry) {
+    if (distance_tolerance_ >= 0 || clearance_ > 0) {
+        Vec3 direction;
+        const double distance = distance_at(entry, entry.time, direction);
+        const double enough =
+            std::max(std::ldexp(std::max(distance_tolerance_, clearance_), length_exponent_), 0.0);
+        if (distance <= enough) {
+            finish(Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b,
+                           distance, 0});
+            return true;
+        }
+    }
+    for (const double share : {0.5, 0x1p-3, 0x1p-6, 0x1p-12}) {
+        const double time = std::min(entry.time + share * time_tolerance_, duration_);
+        if (proof_ && proof_->time <= time) {
+            continue;
+        }
+        if (surely_intersect_at(entry, time)) {
+            proof_ = Entry{time, entry.a, entry.b};
+        }
+    }
+    return false;
+}
+
+bool ContactQuery::surely_intersect_at(const Entry& entry, double time) {
+    set_time(time);
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const Vec3 between = pivot_between_ + time * closing_velocity_;
+    for (Vec3& p : b.points) {
+        p = p + between;
+    }
+    return surely_intersect(a.points, b.points, triangle_error(a, b));
+}
+
+// A proven upper bound on the distance of two triangles at a time, mesh units, and the direction
+// between their closest points.
+double ContactQuery::distance_at(const Entry& entry, double time, Vec3& direction) {
+    set_time(time);
+    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
+    const Vec3 between = pivot_between_ + time * closing_velocity_;
+    Triangle moved = b.points;
+    for (Vec3& p : moved) {
+        p = p + between;
+    }
+    const TriangleDistance closest = measure(a.points, moved);
+    direction = closest.low > 0 ? closest.point_b - closest.point_a : Vec3{0, 0, 0};
+    const double high = closest.low > 0 ? std::ldexp(closest.high, closest.exponent) : 0.0;
+    return std::ldexp(high + 2 * triangle_error(a, b), length_exponent_);
+}
+
+// Rounding hides when exactly a stalled pair touches. It may be seen to intersect a little later;
+// else all that can be said is how near it is.
+void ContactQuery::finish_stalled() {
+    const Entry entry{stall_->time, stall_->a, stall_->b};
+    for (double reach = 1; reach <= kStallReach; reach *= 2) {
+        const double time = std::min(entry.time + reach * time_tolerance_, duration_);
+        if (surely_intersect_at(entry, time)) {
+            finish(Contact{entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
+            return;
+        }
+    }
+    Vec3 direction;
+    const double distance = distance_at(entry, entry.time, direction);
+    if (distance - options_.clearance > kSameDistance * (a_.extent() + b_.extent())) {
+        give_up(entry.time); // a pivot far away, say: rounding is larger than the bodies
+        return;
+    }
+    finish(
+        Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, distance, 0});
+}
+
+} // namespace obb
