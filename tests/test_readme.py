@@ -33,7 +33,8 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 ANY_LINES = "..."
 # A time, or the number of tests an answer took.
 VARYING = re.compile(
-    r"\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+|(?<=triangle tests )[\d,]+( \(\S+ in exact)?"
+    r"\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+"
+    r"|(?<=triangle tests )[\d,]+( \(\S+ in exact)?"
 )
 
 

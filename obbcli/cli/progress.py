@@ -66,6 +66,7 @@ def proving(duration: float, *, wanted: bool) -> Iterator[Callable[[float], None
             if not bars:
                 bars.append(stack.enter_context(_progress()))
                 bars[0].add_task("", total=duration)
+                bars[0].tasks[0].start_time = due - PATIENCE
             text = f"no contact before t = {proven:.6g} of {duration:g} s"
             bars[0].update(bars[0].task_ids[0], description=text, completed=proven)
 

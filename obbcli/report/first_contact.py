@@ -55,7 +55,9 @@ def first_contact_tables(record: Record) -> list[Table]:
         rows.append(("normal", f"{point(result['normal'])} (from A to B)"))
     if result["triangle_a"] is not None:
         a, b = result["triangle_a"], result["triangle_b"]
-        rows.append(("triangles", f"{a} of A and {b} of B ({result['feature']})"))
+        # Triangles that overlap from the start need not meet in any one way.
+        way = f" ({result['feature']})" if result["feature"] else ""
+        rows.append(("triangles", f"{a} of A and {b} of B{way}"))
     return [Table([*rows[:4], *_bracket(result), *rows[4:], *cost_rows(record["stats"])])]
 
 

@@ -20,7 +20,7 @@ import pytest
         # Turned about its edge at x = 0 the cube leaves; about its centre it sweeps past x = 1.
         ("apart.obj", ("--omega", "0", "0", "90", "--degrees", "--pivot", "0", "0", "0"),
          "separated"),
-        ("apart.obj", ("--omega", "0", "0", "1"), "contact"),
+        ("apart.obj", ("--omega", "0", "0", "1", "--translate-b", "0.1", "0", "0"), "contact"),
         ("apart.obj", ("--omega", "1", "0", "0"), "separated"),
         ("apart.obj", ("--vel", "1", "0", "0", "--vel-b", "1", "0", "0"), "separated"),
         ("apart.obj", ("--clearance", "1e-9"), "overlap_at_start"),

@@ -161,6 +161,7 @@ def test_first_contact_quiet_is_status_and_time(here, obbtree, other, words, lin
           "cube.stl (12 triangles)", "(from A to B)")),
         ("apart.obj", ("--vel", "-1", "0", "0"), ("no contact in the whole duration",)),
         ("touching.obj", (), ("in contact at t = 0\n", "triangles")),
+        ("touching.obj", ("--translate-b", "-0.5", "0.25", "0.25"), ("of B\n",)),
         ("touching.obj", ("--max-depth", "0"), ("in contact at t = 0 of boxes: the surfaces",)),
         ("apart.obj", ("--vel", "1", "0", "0", "--translate-b", "1", "0", "0", "--max-depth", "0"),
          ("first contact of boxes at t = ", "none before, and then the surfaces are at most")),
