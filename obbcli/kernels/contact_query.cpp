@@ -115,6 +115,12 @@ void ContactQuery::push(const Entry& entry) {
     std::push_heap(queue_.begin(), queue_.end(), LaterFirst{});
 }
 
+// What cannot touch before a known contact is of no interest any more.
+void ContactQuery::forget_after(double time) {
+    std::erase_if(queue_, [&](const Entry& e) { return e.time > time; });
+    std::make_heap(queue_.begin(), queue_.end(), LaterFirst{});
+}
+
 bool ContactQuery::advance(std::uint64_t max_pops) {
     for (; !is_finished_ && max_pops > 0; --max_pops) {
         if (has_ended()) {

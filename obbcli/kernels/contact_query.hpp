@@ -97,6 +97,7 @@ class ContactQuery {
     [[nodiscard]] static double size_of(const MovingTree& body, const NodeRef& ref);
     [[nodiscard]] std::optional<double> later(double time, double step) const;
     void push(const Entry& entry);
+    void forget_after(double time);
     void visit(const Entry& entry);
     template <bool kOpensA>
     void open(const Entry& entry);

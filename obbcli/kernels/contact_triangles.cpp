@@ -42,9 +42,8 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
                      entry.b,
                      0,
                      0};
-    // What cannot touch before is of no interest any more.
-    std::erase_if(queue_, [&](const Entry& e) { return e.time > high; });
-    std::make_heap(queue_.begin(), queue_.end(), LaterFirst{});
+    forget_after(high);
+});
 }
 
 double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {
