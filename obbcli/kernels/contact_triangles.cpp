@@ -43,7 +43,6 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
                      0,
                      0};
     forget_after(high);
-});
 }
 
 double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {
