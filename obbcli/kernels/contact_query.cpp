@@ -25,6 +25,8 @@ constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
 
 // A stalled pair waits for so many others to prove contact within the tolerance.
 constexpr std::uint64_t kStallPops = 2000;
+// Boxes this near, of their own size, are said to meet when they cannot be told apart any longer.
+constexpr double kAllButMeeting = 0x1p-20;
 // Beyond this an angle in twice the digits of a double says nothing any more.
 constexpr double kMostRadians = 0x1p50;
 
@@ -252,13 +254,17 @@ void ContactQuery::meet_boxes(const Entry& entry) {
         push({*time, entry.a, entry.b});
         return;
     }
-    if (time_apart(a, b, now) > 0) {
+    // A step too short for a double to tell: the boxes all but meet, or turn too fast.
+    const double sizes = norm(a.half_extents) + norm(b.half_extents);
+    MovingFrame closer = now;
+    closer.absolute += kAllButMeeting * sizes;
+    if (time_apart(a, b, closer) > 0) {
         give_up(entry.time);
         return;
     }
     // Boxes that no face axis separates may be apart still, by no more than their diagonals.
-    const double sizes = norm(a.half_extents) + norm(b.half_extents);
-    const double bound = std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * now.absolute, length_exponent_);
+    const double bound =
+        std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * closer.absolute, length_exponent_);
     Contact contact{entry.time, entry.time, Evidence::kBoxes, entry.a, entry.b, 0, bound};
     finish(contact);
 }
