@@ -16,11 +16,15 @@ namespace obb {
 namespace {
 
 // A triple product of three differences, each rounded once, is off by at most gamma_8 times its
-// permanent; 16 u covers the rounding of the bound itself. Products that underflow lose at most
-// 2^-1074 each, then multiplied by at most 2^101 (kLargest): kTiny covers them.
+// permanent; 16 u covers the rounding of the bound itself.
 constexpr double kTripleError = 16 * kUnitRoundoff;
-constexpr double kLargest = 0x1p100;
-constexpr double kTiny = 0x1p-900;
+
+// The error of a triple product (u x v) . w. The product of the sizes is made four times too large
+// so that it overflows, and no sign is sure, before any part of the triple product does. What
+// underflows loses at most 2^-1074, then multiplied by w: the constants cover that.
+[[nodiscard]] double triple_error(double sizes_of_u_and_v, double reach_of_w) {
+    return kTripleError / 4 * ((4 * sizes_of_u_and_v + 0x1p-960) * reach_of_w) + 0x1p-1000;
+}
 
 enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
 
@@ -29,7 +33,7 @@ enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
     const Vec3 u = b - a;
     const Vec3 v = c - a;
     const Vec3 w = d - a;
-    const double error = kTripleError * norm_1(u) * norm_1(v) * reach(w) + kTiny;
+    const double error = triple_error(norm_1(u) * norm_1(v), reach(w));
     const double value = dot(cross(u, v), w);
     return value > error ? Sign::kPositive : value < -error ? Sign::kNegative : Sign::kUnsure;
 }
@@ -52,11 +56,11 @@ struct Sides {
     const Vec3 u = plane[1] - plane[0];
     const Vec3 v = plane[2] - plane[0];
     const Vec3 normal = cross(u, v);
-    const double scale = kTripleError * norm_1(u) * norm_1(v);
+    const double sizes = norm_1(u) * norm_1(v);
     Sides result;
     for (unsigned k = 0; k < 3; ++k) {
         const Vec3 w = other[k] - plane[0];
-        const double error = scale * reach(w) + kTiny;
+        const double error = triple_error(sizes, reach(w));
         const double value = dot(normal, w);
         result.above |= static_cast<unsigned>(value > error) << k;
         result.below |= static_cast<unsigned>(value < -error) << k;
@@ -112,7 +116,7 @@ struct Sides {
         extent = larger(extent, reach(p));
     }
     const auto separated_along = [&](const Vec3& axis) {
-        const double error = kTripleError * norm_1(axis) * extent + kTiny;
+        const double error = kTripleError * norm_1(axis) * extent + kUnderflow;
         std::array<double, 6> s{};
         for (std::size_t k = 0; k < 6; ++k) {
             s[k] = dot(axis, points[k]);
@@ -150,19 +154,25 @@ struct Sides {
     });
 }
 
-[[nodiscard]] bool within_range(const Triangle& a, const Triangle& b) {
-    return larger(reach(a), reach(b)) <= kLargest;
+// Where signs of planes and edges leave a doubt: whether boxes or axes part the triangles, else
+// integers decide.
+[[nodiscard]] TriangleVerdict test_in_doubt(const Triangle& a, const Triangle& b) {
+    if (boxes_apart(a, b)) {
+        return {false, false};
+    }
+    if (larger(reach(a), reach(b)) > kLargestFiltered) {
+        return {triangles_intersect_exactly(a, b, kAllAxes), true};
+    }
+    StillSat sat;
+    if (visit_bounds<false>(a, b, Vec3{0, 0, 0}, 0, 0, sat) || separated_in_plane(a, b)) {
+        return {false, false};
+    }
+    return {triangles_intersect_exactly(a, b, sat.unsure()), true};
 }
 
 } // namespace
 
 TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
-    if (boxes_apart(a, b)) {
-        return {false, false};
-    }
-    if (!within_range(a, b)) {
-        return {triangles_intersect_exactly(a, b, kAllAxes), true};
-    }
     const Sides sides_b = sides(a, b);
     if (sides_b.all_same()) {
         return {false, false};
@@ -176,11 +186,7 @@ TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
             return {*overlap, false};
         }
     }
-    StillSat sat;
-    if (visit_bounds<false>(a, b, Vec3{0, 0, 0}, 0, 0, sat) || separated_in_plane(a, b)) {
-        return {false, false};
-    }
-    return {triangles_intersect_exactly(a, b, sat.unsure()), true};
+    return test_in_doubt(a, b);
 }
 
 bool triangles_intersect(const Triangle& a, const Triangle& b) {

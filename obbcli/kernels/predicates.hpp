@@ -12,7 +12,7 @@ struct TriangleVerdict {
 
 // Whether two closed triangles have a point in common: exact from subnormals to the largest
 // doubles, and for triangles that are segments or points. Nothing here rounds its way to a
-// verdict: comparisons, then signs beyond proven bounds, then integers.
+// verdict: signs beyond proven bounds, then integers.
 [[nodiscard]] TriangleVerdict test_triangles(const Triangle& a, const Triangle& b);
 
 [[nodiscard]] bool triangles_intersect(const Triangle& a, const Triangle& b);
