@@ -13,12 +13,18 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import bench_build
+import bench_primitives
 import bench_static
 import bench_wall
 from harness import Row, machine, record, table
 
 ROOT = Path(__file__).resolve().parents[2]
-BENCHES = {"build": bench_build.run, "static": bench_static.run, "wall": bench_wall.run}
+BENCHES = {
+    "primitives": bench_primitives.run,
+    "build": bench_build.run,
+    "static": bench_static.run,
+    "wall": bench_wall.run,
+}
 
 
 def main() -> None:
