@@ -6,12 +6,15 @@ A `Query` goes on where it stopped; `first_contact` runs one to its end.
 from __future__ import annotations
 
 import time
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
 from obbcli.accuracy import Accuracy
 from obbcli.errors import MotionError
-from obbcli.motion import as_body
+from obbcli.legs import LegQueries
+from obbcli.motion import PathMotion, as_body
 from obbcli.question import (
     POPS_A_SLICE,
     box_limits,
@@ -46,6 +49,11 @@ class Query:
     """A first-contact question that can be advanced, looked at and advanced again.
 
     At any moment `lower_bound` is proven: no contact before it.
+
+    Motions through poses are asked about from one break time of either body to the next, with the
+    bodies posed anew at each, rounded; what that is off their continuous paths (some 1e-14 of the
+    coordinates, or as much as a given matrix is not orthonormal) counts against what is proven, and
+    contact that only such nearness shows is `"within_tolerance"`.
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
@@ -85,6 +93,12 @@ class Query:
         self._seconds["load"] = time.perf_counter() - start
         self._at_start = static_query(self._trees, self._bodies, self._accuracy)
         self._moving: kernels.ContactQuery | None = None
+        self._legs: LegQueries | None = None
+        if any(isinstance(body.motion, PathMotion) for body in self._bodies):
+            # A bracket may consist of two: of the time the bodies are near, and of contact.
+            exact = replace(self._accuracy, time_tolerance=0.5 * self._time_tolerance())
+            ask = partial(Query, any_contact=any_contact)
+            self._legs = LegQueries(self._bodies, self._trees, self._duration, exact, ask)
         self._any_contact = any_contact
         self._is_finished = False
 
@@ -96,6 +110,8 @@ class Query:
     @property
     def lower_bound(self) -> float:
         """No contact in [0, lower_bound): proven. s."""
+        if self._legs is not None:
+            return self._legs.lower_bound
         return 0.0 if self._moving is None else self._moving.lower_bound
 
     @property
@@ -138,6 +154,8 @@ class Query:
 
     def _step(self, pops: int) -> bool:
         """Advance the question at t = 0, then the moving one; return whether all is answered."""
+        if self._legs is not None:
+            return self._legs.step(pops)
         if self._moving is None:
             if not self._at_start.advance(pops):
                 return False
@@ -165,7 +183,6 @@ class Query:
     def _moving_query(self) -> kernels.ContactQuery:
         (a, b), (tree_a, tree_b) = self._bodies, self._trees
         accuracy = self._accuracy
-        tolerance = accuracy.time_tolerance
         coarse, depth_a, depth_b = box_limits(accuracy)
         try:
             return kernels.ContactQuery(
@@ -176,7 +193,7 @@ class Query:
                 b.pose.kernel,
                 _screw(b, tree_b),
                 duration=self._duration,
-                time_tolerance=_TIME_TOLERANCE * self._duration if tolerance is None else tolerance,
+                time_tolerance=self._time_tolerance(),
                 distance_tolerance=(
                     -1.0 if accuracy.distance_tolerance is None else accuracy.distance_tolerance
                 ),
@@ -189,7 +206,13 @@ class Query:
         except ValueError as fault:
             raise MotionError("motion", str(fault), "move or scale the bodies") from fault
 
+    def _time_tolerance(self) -> float:
+        tolerance = self._accuracy.time_tolerance
+        return _TIME_TOLERANCE * self._duration if tolerance is None else tolerance
+
     def _answer(self) -> FirstContact:
+        if self._legs is not None:
+            return self._legs.answer(self._stats())
         if self._at_start.is_contact:
             return self._contact_at_start()
         if not self._is_finished or (self._moving is not None and self._moving.has_given_up):
@@ -267,6 +290,8 @@ class Query:
     def _stats(self) -> QueryStats:
         still = self._at_start.counts()
         moving = (0, 0, 0, 0) if self._moving is None else self._moving.counts()
+        if self._legs is not None:
+            moving = self._legs.counts
         tree_a, tree_b = self._trees
         return QueryStats(
             still[0] + moving[0],

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.mesh import Mesh
+from obbcli.motion import PathMotion
 from obbcli.tree import ObbTree, load_tree
 
 if TYPE_CHECKING:
@@ -52,13 +53,17 @@ def _tree(shape: Shape) -> ObbTree:
 
 
 def duration_of(duration: float | None, bodies: tuple[Body, Body]) -> float:
-    """Return the end of the interval asked about, s: 1 by default where a body moves, else 0.
+    """Return the end of the interval asked about, s.
+
+    By default 0 where both bodies rest, the last time of a motion through poses, or else 1.
 
     Raises:
         MotionError: not a finite number of at least 0.
     """
     if duration is None:
-        return 0.0 if bodies[0].motion.is_at_rest and bodies[1].motion.is_at_rest else 1.0
+        motions = [body.motion for body in bodies if not body.motion.is_at_rest]
+        paths = [float(m.times[-1]) for m in motions if isinstance(m, PathMotion)]
+        return max(paths, default=1.0 if motions else 0.0)
     try:
         seconds = float(duration)
     except (TypeError, ValueError) as fault:

@@ -1,0 +1,288 @@
+"""Motion through poses, asked about leg by leg: between break times, all velocities are constant.
+
+The path of a body is continuous: each piece turns and goes as its velocities say from its own pose,
+and what rounding leaves between its end and the next pose is closed on the shortest way. Legs are
+proven with that much to spare, so that nothing slips through between two of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from obbcli.motion import Body, Motion, PathMotion
+from obbcli.question import pivot_of
+from obbcli.results import FirstContact, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.contact import Query
+    from obbcli.pose import Pose
+    from obbcli.question import Trees
+    from obbcli.results import QueryStats
+    from obbcli.tree import ObbTree
+
+    Asker = Callable[[Body, Body, float, Accuracy], Query]
+
+# Of the coordinates: posing a vertex thrice (12 u each), a matrix product (16 u) and the pose in
+# closed form (28 u) come to a third of this; the rest lets the kernels prove closeness within it.
+_ROUNDING = 2.0**-45
+
+Counts = tuple[int, int, int, int]
+
+
+class Leg(NamedTuple):
+    """A time in which both bodies have constant velocities.
+
+    Attributes:
+        start: s, of the whole question's clock.
+        duration: s, rounded up.
+        bodies: posed at the start.
+        slack: mesh units; by no more than this does the bodies' distance on their true paths differ
+            from that of `bodies`, up to the start of the next leg.
+    """
+
+    start: float
+    duration: float
+    bodies: tuple[Body, Body]
+    slack: float
+
+
+def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterator[Leg]:
+    """Yield the legs of [0, duration], earliest first; the last may be an instant.
+
+    Raises:
+        MotionError: positions leave the range of double.
+    """
+    breaks = {0.0}
+    for body in bodies:
+        if isinstance(body.motion, PathMotion):
+            breaks.update(t for t in body.motion.times.tolist() if t <= duration)
+    starts = sorted(breaks)
+    pairs = tuple(zip(bodies, trees, strict=True))
+    for start, end in zip(starts, [*starts[1:], duration], strict=True):
+        (a, error_a), (b, error_b) = (_placed(body, tree, start) for body, tree in pairs)
+        jumps = sum(_jump(body, tree, end) for body, tree in pairs) if end > start else 0.0
+        yield Leg(start, _length(start, end), (a, b), error_a + error_b + jumps)
+
+
+def _length(start: float, end: float) -> float:
+    """Return end - start, rounded up."""
+    length = end - start
+    return length if _reaches(start, length, end) else math.nextafter(length, math.inf)
+
+
+def _reaches(start: float, length: float, end: float) -> bool:
+    """Return whether start + length >= end, exactly."""
+    return math.fsum((start, length, -end)) >= 0
+
+
+def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
+    """Return the body with pose and velocities at a time, and by how much that is off its path."""
+    motion = body.motion
+    if isinstance(motion, PathMotion):
+        index = motion.index_at(time)
+        first = max(index, 0)
+        piece = motion.piece(index)
+        if piece.is_at_rest or time == motion.times[first]:
+            return Body(tree, motion.poses[first], piece), 0.0
+        pose = motion.pose_at(time)
+        error = _rounding(tree, motion.poses[first].translation, pose.translation)
+        now = Motion(piece.linear_velocity, piece.angular_velocity, pose.translation)
+        return Body(tree, pose, now), error
+    if motion.is_at_rest or time == 0:
+        return Body(tree, body.pose, motion), 0.0
+    velocity, spin = motion.linear_velocity, motion.angular_velocity
+    pivot = pivot_of(body, tree) if spin.any() else np.zeros(3)
+    pose = motion.pose_at(time, body.pose, pivot)
+    shift = time * velocity
+    error = _rounding(tree, body.pose.translation, pose.translation, pivot, pivot, shift)
+    return Body(tree, pose, Motion(velocity, spin, pivot + shift)), error
+
+
+def _rounding(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
+    """Bound what rounding moves a vertex by where these are added up."""
+    return _ROUNDING * sum(map(_norm, (*vectors, np.abs(tree.bounds).max(axis=0))))
+
+
+def _jump(body: Body, tree: ObbTree, time: float) -> float:
+    """Bound how far any vertex is from the next pose where a piece ends at this time."""
+    motion = body.motion
+    if not isinstance(motion, PathMotion):
+        return 0.0
+    index = motion.index_at(time)
+    if index < 1 or motion.times[index] != time or motion.piece(index - 1).is_at_rest:
+        return 0.0
+    here, there = motion.poses[index - 1 : index + 1]
+    end = motion.piece(index - 1).pose_at(time - float(motion.times[index - 1]), here)
+    return _apart(tree, end, there) + _rounding(tree, here.translation, there.translation)
+
+
+def _apart(tree: ObbTree, a: Pose, b: Pose) -> float:
+    """Bound how far two poses put any vertex apart, but for rounding."""
+    low, high = tree.bounds
+    center = 0.5 * low + 0.5 * high
+    turned = a.rotation - b.rotation
+    middle = turned @ center + (a.translation - b.translation)
+    return _norm(middle) + math.hypot(*turned.ravel().tolist()) * _norm(high - center)
+
+
+def _norm(vector: NDArray[np.float64]) -> float:
+    return math.hypot(*vector.tolist())
+
+
+class LegQueries:
+    """The questions about legs, one after the other, as one that can be advanced.
+
+    A leg is first asked with its slack as clearance: apart is then a proof for the true paths, and
+    the lower bound too. Where that is contact, the leg's own path is asked for its evidence, and
+    then the instant at which the next leg starts; if neither shows any, closeness remains.
+
+    Args:
+        bodies: with paths.
+        trees: theirs.
+        duration: s.
+        accuracy: its time tolerance in s.
+        ask: makes the question about a leg.
+    """
+
+    def __init__(
+        self,
+        bodies: tuple[Body, Body],
+        trees: Trees,
+        duration: float,
+        accuracy: Accuracy,
+        ask: Asker,
+    ) -> None:
+        self._legs = legs_of(bodies, trees, duration)
+        self._duration = duration
+        self._accuracy = accuracy
+        self._ask = ask
+        self._done: Counts = (0, 0, 0, 0)
+        self._present: Counts = (0, 0, 0, 0)
+        self._near: FirstContact | None = None
+        self._answer: FirstContact | None = None
+        self._is_at_end = False  # only the instant after the leg of the near contact is left
+        self._leg = next(self._legs)
+        self._query = self._ask_wide(self._leg)
+
+    @property
+    def lower_bound(self) -> float:
+        """No contact in [0, lower_bound): proven. s."""
+        known = self._answer or self._near
+        if known is None:
+            return self._clock(self._query.lower_bound, up=False)
+        return self._duration if known.time is None else known.time
+
+    @property
+    def counts(self) -> Counts:
+        """Box tests, triangle tests, exact ones and pops so far."""
+        return _sum(self._done, self._present)
+
+    def answer(self, stats: QueryStats) -> FirstContact:
+        """Return what is known now."""
+        if self._answer is None:
+            return _unresolved(self.lower_bound, stats)
+        return replace(self._answer, stats=stats)
+
+    def step(self, pops: int) -> bool:
+        """Take at most so many pairs from the queue; true when the answer is complete."""
+        found = self._query.advance(pops)
+        stats = found.stats
+        self._present = (
+            stats.box_tests,
+            stats.triangle_tests,
+            stats.exact_triangle_tests,
+            stats.pops,
+        )
+        if self._query.is_finished:
+            self._answer = self._conclude(found)
+        return self._answer is not None
+
+    def _conclude(self, found: FirstContact) -> FirstContact | None:
+        """Return the answer after that of the present question, or ask the next one."""
+        if found.status is Status.UNRESOLVED:
+            return _unresolved(self.lower_bound, found.stats)
+        if found.time is not None:
+            found = self._on_clock(found)
+            if self._near is not None or self._leg.slack == 0:
+                return found
+            self._near = found
+            self._go_on(self._leg, self._ask_close)
+            return None
+        leg = next(self._legs, None)
+        if self._near is None:
+            if leg is None:
+                return FirstContact(status=Status.SEPARATED, stats=found.stats)
+            self._go_on(leg, self._ask_wide)
+            return None
+        # Contact at the very end of a leg may show only in the pose after it.
+        if leg is None or self._is_at_end or not self._is_soon(leg.start):
+            return self._near
+        self._is_at_end = True
+        self._go_on(leg._replace(duration=0.0), self._ask_close)
+        return None
+
+    def _is_soon(self, time: float) -> bool:
+        assert self._near is not None
+        assert self._near.time is not None
+        return time - self._near.time <= (self._accuracy.time_tolerance or 0.0)
+
+    def _go_on(self, leg: Leg, ask: Callable[[Leg], Query]) -> None:
+        self._done = _sum(self._done, self._present)
+        self._present = (0, 0, 0, 0)
+        self._leg = leg
+        self._query = ask(leg)
+
+    def _ask_close(self, leg: Leg) -> Query:
+        return self._ask(*leg.bodies, leg.duration, self._accuracy)
+
+    def _ask_wide(self, leg: Leg) -> Query:
+        clearance = self._accuracy.clearance + leg.slack
+        return self._ask(*leg.bodies, leg.duration, replace(self._accuracy, clearance=clearance))
+
+    def _on_clock(self, found: FirstContact) -> FirstContact:
+        """Return a leg's contact on the whole question's clock, from what is proven on."""
+        assert found.time_bounds is not None
+        low, high = found.time_bounds
+        if self._near is None:
+            low = self._clock(low, up=False)
+        else:
+            assert self._near.time is not None
+            low = self._near.time
+        end = None if high is None else max(low, self._clock(high, up=True))
+        # What is but near at t = 0 was decided exactly to be apart then.
+        is_near = found.evidence == "within_tolerance" and self._accuracy.clearance == 0
+        is_at_start = low == 0 and not end and found.status is Status.OVERLAP_AT_START
+        return replace(
+            found,
+            status=Status.OVERLAP_AT_START if is_at_start and not is_near else Status.CONTACT,
+            time=low,
+            time_bounds=(low, end),
+        )
+
+    def _clock(self, time: float, *, up: bool) -> float:
+        """Return a leg's time on the whole question's clock, rounded down or up."""
+        start = self._leg.start
+        total = start + time
+        rest = math.fsum((start, time, -total))
+        if up and rest > 0:
+            total = math.nextafter(total, math.inf)
+        elif not up and rest < 0:
+            total = math.nextafter(total, 0.0)
+        return min(total, self._duration)
+
+
+def _sum(a: Counts, b: Counts) -> Counts:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
+
+
+def _unresolved(low: float, stats: QueryStats) -> FirstContact:
+    return FirstContact(status=Status.UNRESOLVED, time=low, time_bounds=(low, None), stats=stats)
