@@ -227,8 +227,10 @@ class Query:
         place = self._moving.place()
         point_a, point_b, normal, normal_a, normal_b = map(_vector, place[:5])
         by_boxes = evidence is kernels.Evidence.BOXES
+        # Whether surfaces themselves touch at t = 0 was decided exactly before.
+        is_at_start = high == 0 and (by_boxes or self._accuracy.clearance > 0)
         return FirstContact(
-            status=Status.CONTACT if low > 0 else Status.OVERLAP_AT_START,
+            status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
             time=low,
             time_bounds=(low, None if by_boxes else high),
             evidence=_EVIDENCE[evidence],
