@@ -6,8 +6,6 @@
 #include "triangle.hpp"
 #include "vec.hpp"
 
-#include <cmath>
-
 namespace obb {
 
 [[nodiscard]] constexpr double smaller(double a, double b) { return b < a ? b : a; }
@@ -20,9 +18,7 @@ namespace obb {
 }
 
 // The largest magnitude of a coordinate or length.
-[[nodiscard]] inline double reach(const Vec3& v) {
-    return largest(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
-}
+[[nodiscard]] inline double reach(const Vec3& v) { return norm_inf(v); }
 [[nodiscard]] inline double reach(const Triangle& t) {
     return largest(reach(t[0]), reach(t[1]), reach(t[2]));
 }
