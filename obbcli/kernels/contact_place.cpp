@@ -59,7 +59,25 @@ Vec3 ContactQuery::in_world(Vec3 point) const {
 }
 
 ContactPlace ContactQuery::place() {
-    return contact_->evidence == Evidence::kBoxes ? place_of_boxes() : place_of_triangles();
+    if (contact_->evidence == Evidence::kBoxes) {
+        return place_of_boxes();
+    }
+    return exact_ ? place_in_translation() : place_of_triangles();
+}
+
+// The exact question about the pair knows its features as well.
+ContactPlace ContactQuery::place_in_translation() const {
+    const std::optional<PairContact> found =
+        first_contact(a_.posed_triangle(contact_->a), b_.posed_triangle(contact_->b),
+                      {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration});
+    const auto dimension = [](const Feature& f) { return std::min<int>(f.dimension, 2); };
+    return {found->point,
+            found->point,
+            found->touch.normal,
+            found->normal_a,
+            found->normal_b,
+            dimension(found->touch.feature_a),
+            dimension(found->touch.feature_b)};
 }
 
 ContactPlace ContactQuery::place_of_triangles() {
@@ -78,7 +96,8 @@ ContactPlace ContactQuery::place_of_triangles() {
     const std::optional<PairContact> meeting =
         is_apart ? std::nullopt : first_contact(a.points, moved, LinearMotion{});
     if (!is_apart) {
-        point_a = point_b = meeting ? meeting->point : a.points[0];
+        point_a = meeting ? meeting->point : point_a;
+        point_b = meeting ? meeting->point : point_b;
     }
     const TriangleStep step = time_apart(a, b, now, is_apart ? point_b - point_a : Vec3{0, 0, 0});
     const Vec3 towards_b = -1.0 * now.closing_velocity;

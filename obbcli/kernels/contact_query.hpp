@@ -114,6 +114,7 @@ class ContactQuery {
     void give_up(double time);
     void finish(std::optional<Contact> contact);
     [[nodiscard]] ContactPlace place_of_triangles();
+    [[nodiscard]] ContactPlace place_in_translation() const;
     [[nodiscard]] ContactPlace place_of_boxes();
     [[nodiscard]] Vec3 in_world(Vec3 point) const;
     [[nodiscard]] double triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const;

@@ -140,8 +140,13 @@ double ContactQuery::distance_at(const Entry& entry, double time, Vec3& directio
 // else all that can be said is how near it is.
 void ContactQuery::finish_stalled() {
     const Entry entry{stall_->time, stall_->a, stall_->b};
-    for (double reach = 1; reach <= kStallReach; reach *= 2) {
+    for (double reach = 0x1p-3; reach <= kStallReach; reach *= 2) {
         const double time = std::min(entry.time + reach * time_tolerance_, duration_);
+        if (Vec3 unused; clearance_ > 0 && distance_at(entry, time, unused) <= options_.clearance) {
+            finish(Contact{entry.time, time, Evidence::kWithinTolerance, entry.a, entry.b,
+                           options_.clearance, 0});
+            return;
+        }
         if (surely_intersect_at(entry, time)) {
             finish(Contact{entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
             return;
