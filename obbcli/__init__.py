@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     )
     from obbcli.mesh import Mesh, load_mesh
     from obbcli.motion import Body, Motion, Pose
+    from obbcli.nearest import distance
     from obbcli.query import collide, triangle_pairs
-    from obbcli.results import Collision, FirstContact, QueryStats, Status
+    from obbcli.results import Collision, Distance, FirstContact, QueryStats, Status
     from obbcli.tree import ObbTree
 
 # A literal, because asking the installed metadata costs three times a bare interpreter's start.
@@ -32,6 +33,7 @@ _HOMES = {
     "Accuracy": "accuracy",
     "Body": "motion",
     "Collision": "results",
+    "Distance": "results",
     "FirstContact": "results",
     "Mesh": "mesh",
     "MeshError": "errors",
@@ -47,6 +49,7 @@ _HOMES = {
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
     "collide": "query",
+    "distance": "nearest",
     "first_contact": "contact",
     "load_mesh": "mesh",
     "triangle_pairs": "query",
@@ -56,6 +59,7 @@ __all__ = [
     "Accuracy",
     "Body",
     "Collision",
+    "Distance",
     "FirstContact",
     "Mesh",
     "MeshError",
@@ -72,6 +76,7 @@ __all__ = [
     "UnresolvedError",
     "__version__",
     "collide",
+    "distance",
     "first_contact",
     "load_mesh",
     "triangle_pairs",

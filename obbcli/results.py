@@ -147,6 +147,30 @@ class FirstContact:
         return _collides(self.status)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Distance:
+    """How far apart two bodies are at rest.
+
+    Attributes:
+        distance: mesh units; the upper one of `bounds`. 0 where the surfaces touch, and only there.
+        bounds: mesh units; (lo, hi), both proven. A limit that ended the search leaves them wide.
+        point_a: where on A hi was measured, world coordinates, rounded to double. Of bodies that
+            touch a common point.
+        point_b: where on B.
+        triangle_a: row of A's mesh file that `point_a` lies in.
+        triangle_b: row of B's mesh file that `point_b` lies in.
+        stats: what the question cost.
+    """
+
+    distance: float
+    bounds: tuple[float, float]
+    point_a: Vector
+    point_b: Vector
+    triangle_a: int
+    triangle_b: int
+    stats: QueryStats
+
+
 def _collides(status: Status) -> bool:
     if status is Status.UNRESOLVED:
         raise UnresolvedError(

@@ -13,6 +13,7 @@ from obbcli.cli.options import GuardedHelp
 _COMMANDS = {
     "collide": "collide",
     "first-contact": "first_contact",
+    "distance": "distance",
     "build": "build",
     "info": "info",
 }
@@ -23,6 +24,7 @@ obbtree: do these two triangle meshes touch, and when first?
   obbtree collide gear.stl shaft.obj     do they touch, and which triangles?
   obbtree first-contact gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -6
                                          when and where do they first touch?
+  obbtree distance gear.stl shaft.obj    how far apart are they, and where?
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 

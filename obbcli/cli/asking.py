@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
     from obbcli.cli.question import Question
     from obbcli.contact import Query
-    from obbcli.results import Collision, FirstContact
+    from obbcli.results import Collision, Distance, FirstContact
 
-    Answer = TypeVar("Answer", Collision, FirstContact)
+    Answer = TypeVar("Answer", Collision, Distance, FirstContact)
 
 
 def refuse_unanswered(asked: Iterable[tuple[str, Any, str]]) -> None:

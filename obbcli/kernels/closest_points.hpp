@@ -48,4 +48,11 @@ struct DistanceBound {
 [[nodiscard]] TriangleDistance measure_finely(const Triangle& a, const Triangle& b,
                                               const NearFeatures& features);
 
+// A point of two triangles that intersect, rounded to double.
+[[nodiscard]] Vec3 common_point(const Triangle& a, const Triangle& b);
+
+// An order of triangles, any at all: who treats two of them in this order gives the same digits
+// when they are swapped.
+[[nodiscard]] bool precedes(const Triangle& a, const Triangle& b);
+
 } // namespace obb

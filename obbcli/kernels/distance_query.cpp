@@ -1,14 +1,13 @@
 #include "distance_query.hpp"
 
 #include "box_distance.hpp"
-#include "pair_query.hpp"
 #include "predicates.hpp"
 #include "query_frame.hpp"
 #include "scale.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -24,8 +23,6 @@ constexpr std::uint32_t kBatch = 6;
 // costs more than it saves once the least distance is about known.
 constexpr std::uint64_t kPatience = 512;
 constexpr std::uint32_t kSmall = 512;
-// Lengths below this share of the scene may lose digits to underflow: they are not told apart.
-constexpr double kLeastLength = 0x1p-1000;
 
 // A length times 2^exponent, one place further down or up where that rounds.
 [[nodiscard]] double scaled_down(double length, int exponent) {
@@ -50,7 +47,7 @@ DistanceQuery::DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeVi
     bound_ = frame.bound;
     shrink_ = frame.shrink;
     exponent_ = frame.exponent;
-    unit_ = std::ldexp(1.0, std::min(-exponent_, 1000)); // of lengths beyond that none is in use
+    unit_ = std::abs(exponent_) <= 700 ? std::ldexp(1.0, -exponent_) : 0.0;
     tolerance_ = std::ldexp(options.tolerance, -exponent_);
     box_units_ = {std::ldexp(1.0, a.scale_exponent - exponent_),
                   std::ldexp(1.0, b.scale_exponent - exponent_)};
@@ -219,13 +216,12 @@ double DistanceQuery::bound(const Side& a, const Side& b) {
     return shrink_ * std::sqrt(square);
 }
 
-double DistanceQuery::in_unit(double length, int exponent) const {
-    return exponent == 0 ? unit_ * length : std::ldexp(length, exponent - exponent_);
+double DistanceQuery::low_in_unit(double length, int exponent) const {
+    return exponent == 0 && unit_ > 0 ? unit_ * length : scaled_down(length, exponent - exponent_);
 }
 
-double DistanceQuery::low_in_unit(double length, int exponent) const {
-    const double low = in_unit(length, exponent);
-    return low < kLeastLength ? 0.0 : low;
+double DistanceQuery::high_in_unit(double length, int exponent) const {
+    return exponent == 0 && unit_ > 0 ? unit_ * length : scaled_up(length, exponent - exponent_);
 }
 
 bool DistanceQuery::is_settled(double key) const {
@@ -304,7 +300,7 @@ void DistanceQuery::close(const Pair& pair) {
 }
 
 void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b) {
-    const double high = std::max(in_unit(found.high, found.exponent), kLeastLength);
+    const double high = high_in_unit(found.high, found.exponent);
     const DistanceBounds one{0, 0, found.point_a, found.point_b, a_.id(a), b_.id(b)};
     if (high < high_ || (high == high_ && ids(one) < ids(best_))) {
         high_ = high;
@@ -313,10 +309,9 @@ void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const 
 }
 
 void DistanceQuery::touch(const NodeRef& a, const NodeRef& b) {
-    const std::optional<PairContact> contact =
-        first_contact(a_.triangle(a), b_.triangle(b), LinearMotion{});
+    const Vec3 point = common_point(a_.triangle(a), b_.triangle(b));
     low_ = high_ = 0;
-    best_ = {0, 0, contact->point, contact->point, a_.id(a), b_.id(b)};
+    best_ = {0, 0, point, point, a_.id(a), b_.id(b)};
     queue_.clear();
     stack_.clear();
 }

@@ -91,7 +91,7 @@ class DistanceQuery {
     template <bool kOpensA>
     [[nodiscard]] std::array<double, 2> bounds_of_children(const std::array<NodeRef, 2>& children,
                                                            const Side& other);
-    [[nodiscard]] double in_unit(double length, int exponent) const;
+    [[nodiscard]] double high_in_unit(double length, int exponent) const;
     [[nodiscard]] double low_in_unit(double length, int exponent) const;
 
     // Whether a lower bound is as good as the least distance found.
@@ -105,7 +105,7 @@ class DistanceQuery {
     RoundingBound bound_{};
     double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
     int exponent_ = 0;
-    double unit_ = 1; // 2^-exponent_
+    double unit_ = 0; // 2^-exponent_; 0 where products with it may underflow
     double tolerance_ = 0;
     std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
     std::vector<Pair> queue_;               // a heap, the least key in front

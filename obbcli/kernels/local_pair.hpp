@@ -10,15 +10,22 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace obb {
 
-// Products of four lengths occur below: they stay in range for lengths between these, and others
-// are scaled by a power of two first.
+// Products of four lengths stay in range for lengths between these; others are scaled by a power of
+// two first.
 inline constexpr double kShortest = 0x1p-100;
 inline constexpr double kLongest = 0x1p100;
+
 template <typename Real>
 using Corners3 = std::array<Vector3<Real>, 3>;
+
+[[nodiscard]] inline Vec3 nearest_double(const Vec3& v) { return v; }
+[[nodiscard]] inline Vec3 nearest_double(const Vector3<Twofold>& v) {
+    return {v.x.high, v.y.high, v.z.high};
+}
 
 // Two triangles relative to A's first corner and scaled by 2^-exponent. Every corner is off by at
 // most the type's roundoff times its distance from there, and so is every point of the triangles:
@@ -28,6 +35,12 @@ struct LocalPair {
     Corners3<Real> a, b;
     double extent; // sum of the largest distances of A's and B's corners from the origin, or more
     int exponent;
+    Vec3 origin; // A's first corner, in the world
+
+    // A point in the world, rounded to double.
+    [[nodiscard]] Vec3 placed(const Vector3<Real>& p) const {
+        return origin + scaled(nearest_double(p), exponent);
+    }
 };
 
 [[nodiscard]] inline Vec3 difference(const Vec3& p, const Vec3& q, double) { return p - q; }
@@ -42,11 +55,6 @@ struct LocalPair {
     return {{high.x, low.x}, {high.y, low.y}, {high.z, low.z}};
 }
 
-[[nodiscard]] inline Vec3 nearest_double(const Vec3& v) { return v; }
-[[nodiscard]] inline Vec3 nearest_double(const Vector3<Twofold>& v) {
-    return {v.x.high, v.y.high, v.z.high};
-}
-
 template <typename Real>
 [[nodiscard]] double reach_of(const Corners3<Real>& corners) {
     return reach(Triangle{nearest_double(corners[0]), nearest_double(corners[1]),
@@ -54,22 +62,29 @@ template <typename Real>
 }
 
 template <typename Real>
-[[nodiscard]] LocalPair<Real> localized(Triangle a, Triangle b) {
-    LocalPair<Real> pair;
-    pair.exponent = 0;
-    // Differences of the largest doubles overflow. What underflows here is 2^-1000 of the corners.
-    if (larger(reach(a), reach(b)) > 0x1p1000) {
-        pair.exponent = 64;
-        for (std::size_t k = 0; k < 3; ++k) {
-            a[k] = 0x1p-64 * a[k];
-            b[k] = 0x1p-64 * b[k];
-        }
-    }
+[[nodiscard]] LocalPair<Real> relative_to_corner(const Triangle& a, const Triangle& b) {
+    LocalPair<Real> pair{};
     for (std::size_t k = 0; k < 3; ++k) {
         pair.a[k] = difference(a[k], a[0], Real{});
         pair.b[k] = difference(b[k], a[0], Real{});
     }
+    return pair;
+}
+
+template <typename Real>
+[[nodiscard]] LocalPair<Real> localized(const Triangle& a, const Triangle& b) {
+    LocalPair<Real> pair = relative_to_corner<Real>(a, b);
     double far_a = reach_of(pair.a), far_b = reach_of(pair.b);
+    if (!(larger(far_a, far_b) <= std::numeric_limits<double>::max())) {
+        // Overflow. What underflows instead is far below a roundoff of such an extent.
+        const auto quarter = [](const Triangle& t) {
+            return Triangle{0.25 * t[0], 0.25 * t[1], 0.25 * t[2]};
+        };
+        pair = relative_to_corner<Real>(quarter(a), quarter(b));
+        pair.exponent = 2;
+        far_a = reach_of(pair.a);
+        far_b = reach_of(pair.b);
+    }
     const double farthest = larger(far_a, far_b);
     if (farthest > 0 && !(farthest >= kShortest && farthest <= kLongest)) {
         const int k = exponent_of(farthest);
@@ -81,6 +96,7 @@ template <typename Real>
         far_a = reach_of(pair.a);
         far_b = reach_of(pair.b);
     }
+    pair.origin = a[0];
     pair.extent = 1.7320508075688774 * (far_a + far_b) * (1 + 8 * kUnitRoundoff);
     return pair;
 }

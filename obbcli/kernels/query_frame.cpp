@@ -65,9 +65,12 @@ QueryFrame set_common_frame(PosedTree& a, PosedTree& b) {
     require_range(b);
     const Pose& pa = a.pose();
     const Pose& pb = b.pose();
-    const int exponent =
-        std::max({a.tree().scale_exponent, b.tree().scale_exponent,
-                  exponent_of(norm_inf(pa.translation)), exponent_of(norm_inf(pb.translation))});
+    int exponent = std::max(a.tree().scale_exponent, b.tree().scale_exponent);
+    for (const Pose* pose : {&pa, &pb}) {
+        if (const double shift = norm_inf(pose->translation); shift > 0) {
+            exponent = std::max(exponent, exponent_of(shift));
+        }
+    }
     const double skew_a = skew_of(pa.rotation);
     a.set_frame(Mat3::identity(), {0, 0, 0}, exponent);
     if (pa == pb) {

@@ -1,0 +1,76 @@
+"""The record of `obbtree distance` and its table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli.report.collide import cost_rows, source_rows
+from obbcli.report.record import document, stats_part
+from obbcli.report.table import Table, point
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.report.record import Record, Source
+    from obbcli.results import Distance
+
+
+def distance_record(
+    sources: Sequence[Source],
+    motion: Record,
+    accuracy: Accuracy,
+    answer: Distance,
+    *,
+    is_complete: bool,
+) -> Record:
+    """Return the record of a question.
+
+    Args:
+        sources: the files of A and B.
+        motion: as `motion_part` gives it.
+        accuracy: as used.
+        answer: what came out.
+        is_complete: whether the search ended before a limit of pops or time.
+    """
+    return document(
+        "distance",
+        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
+        motion=motion,
+        accuracy=accuracy.as_dict(),
+        result={
+            "distance": answer.distance,
+            "bounds": list(answer.bounds),
+            "point_a": list(answer.point_a),
+            "point_b": list(answer.point_b),
+            "triangle_a": answer.triangle_a,
+            "triangle_b": answer.triangle_b,
+            "complete": is_complete,
+        },
+        stats=stats_part(answer.stats),
+    )
+
+
+def distance_tables(record: Record) -> list[Table]:
+    """Return the table of a record."""
+    result = record["result"]
+    touches = result["distance"] == 0
+    rows = [
+        *source_rows(record),
+        ("distance", f"{result['distance']!r}{' (they touch)' if touches else ''}"),
+        *([] if touches else [("bounds", _bounds(result))]),
+        ("point of A", f"{point(result['point_a'])} (triangle {result['triangle_a']})"),
+        ("point of B", f"{point(result['point_b'])} (triangle {result['triangle_b']})"),
+    ]
+    return [Table([*rows, *cost_rows(record["stats"])])]
+
+
+def distance_bare(record: Record) -> str:
+    """Return the distance."""
+    return f"{record['result']['distance']!r}\n"
+
+
+def _bounds(result: Record) -> str:
+    low, high = result["bounds"]
+    cut = "" if result["complete"] else "; a limit was reached"
+    return f"{low!r} to {high!r}, proven{cut}"
