@@ -60,6 +60,9 @@ double shrink_of(double skew) { return 1 - 0x1p-44 - 8 * skew; }
 
 } // namespace
 
+// Overlap survives any affine map, so poses need not be exactly orthonormal: what they lack goes
+// into the bound. A translation of zero has no length to count: exponent_of() would take it for 1,
+// and small meshes would sink into the absolute bound.
 QueryFrame set_common_frame(PosedTree& a, PosedTree& b) {
     require_range(a);
     require_range(b);

@@ -1,6 +1,7 @@
 #include "static_query.hpp"
 
 #include "predicates.hpp"
+#include "query_frame.hpp"
 #include "scale.hpp"
 
 #include <algorithm>
@@ -8,64 +9,6 @@
 #include <stdexcept>
 
 namespace obb {
-
-namespace {
-
-// Inverse of a matrix that is orthonormal up to 1e-9, by its adjugate.
-Mat3 inverse(const Mat3& m) {
-    const Vec3 c0 = cross(m.rows[1], m.rows[2]);
-    const Vec3 c1 = cross(m.rows[2], m.rows[0]);
-    const Vec3 c2 = cross(m.rows[0], m.rows[1]);
-    const double scale = 1.0 / dot(m.rows[0], c0);
-    return {{scale * Vec3{c0.x, c1.x, c2.x}, scale * Vec3{c0.y, c1.y, c2.y},
-             scale * Vec3{c0.z, c1.z, c2.z}}};
-}
-
-Mat3 product(const Mat3& a, const Mat3& b) {
-    Mat3 result;
-    for (std::size_t i = 0; i < 3; ++i) {
-        result.rows[i] = {dot(a.rows[i], b.column(0)), dot(a.rows[i], b.column(1)),
-                          dot(a.rows[i], b.column(2))};
-    }
-    return result;
-}
-
-// Largest entry of |M^T M - 1|.
-double skew_of(const Mat3& m) {
-    double skew = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            skew = std::fmax(skew, std::fabs(dot(m.column(i), m.column(j)) - (i == j ? 1.0 : 0.0)));
-        }
-    }
-    return skew;
-}
-
-// Coordinates of a posed mesh stay below three times its largest coordinate plus the translation.
-void require_range(const PosedTree& body) {
-    if (body.pose().is_identity()) {
-        return;
-    }
-    const double largest = norm_inf(body.pose().translation);
-    if (std::max(body.tree().scale_exponent, exponent_of(largest)) > 1020) {
-        throw std::domain_error("posed coordinates would exceed the range of double (about 1e307)");
-    }
-}
-
-// A power of two above every coordinate. A translation of zero has no length to count:
-// exponent_of() would take it for 1, and small meshes would sink into the absolute bound.
-int exponent_of_scene(const PosedTree& a, const PosedTree& b) {
-    int exponent = std::max(a.tree().scale_exponent, b.tree().scale_exponent);
-    for (const PosedTree* body : {&a, &b}) {
-        const double largest = norm_inf(body->pose().translation);
-        if (largest > 0) {
-            exponent = std::max(exponent, exponent_of(largest));
-        }
-    }
-    return exponent;
-}
-
-} // namespace
 
 void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
     matrix_ = matrix;
@@ -131,42 +74,15 @@ std::uint32_t PosedTree::id(const NodeRef& ref) const { return tree_->triangle_i
 StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& b,
                          const Pose& pose_b, const StaticQueryOptions& options)
     : a_(a, pose_a), b_(b, pose_b), options_(options) {
-    require_range(a_);
-    require_range(b_);
-    set_frames();
+    const QueryFrame frame = set_common_frame(a_, b_);
+    bound_ = frame.bound;
+    exponent_ = frame.exponent;
     Pair roots;
     reach(a_, a.root(), options.max_depth_a, roots.a);
     reach(b_, b.root(), options.max_depth_b, roots.b);
     if (!are_apart(roots.a, roots.b)) {
         stack_.push_back(roots);
     }
-}
-
-// Boxes are tested in A's own frame, scaled by one power of two so that nothing overflows and only
-// what is 2^-900 of the scene can underflow. Overlap survives any affine map, so poses need not be
-// exactly orthonormal: what they lack goes into the bound.
-void StaticQuery::set_frames() {
-    const Pose& pa = a_.pose();
-    const Pose& pb = b_.pose();
-    exponent_ = exponent_of_scene(a_, b_);
-    const double tiny = 0x1p-900;
-    if (pa == pb) {
-        // A common pose moves no box against the other. It still rounds the triangles.
-        a_.set_frame(Mat3::identity(), {0, 0, 0}, exponent_);
-        b_.set_frame(Mat3::identity(), {0, 0, 0}, exponent_);
-        const double rounding = pa.is_identity() ? 0.0 : 0x1p-46 * 8.0;
-        bound_ = {64 * kUnitRoundoff, rounding + tiny};
-        return;
-    }
-    const Mat3 to_a = inverse(pa.rotation);
-    const Mat3 matrix = product(to_a, pb.rotation);
-    const Vec3 offset =
-        to_a * (scaled(pb.translation, -exponent_) - scaled(pa.translation, -exponent_));
-    a_.set_frame(Mat3::identity(), {0, 0, 0}, exponent_);
-    b_.set_frame(matrix, offset, exponent_);
-    // No coordinate or translation exceeds 1 here: 2^-46 is 128 units of roundoff, 8 the sum over
-    // both bodies of |vertex|_1 + |translation|.
-    bound_ = {64 * kUnitRoundoff + 8 * skew_of(matrix), 0x1p-46 * 8.0 + tiny};
 }
 
 void StaticQuery::reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,

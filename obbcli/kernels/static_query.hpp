@@ -101,7 +101,6 @@ class StaticQuery {
         Side a, b;
     };
 
-    void set_frames();
     void reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
                Side& side) const;
     [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
