@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import time
 from typing import TYPE_CHECKING
 
@@ -117,19 +118,29 @@ def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -
         limit: stop after so many pairs, and return those, sorted. Which ones depends on the trees.
 
     Raises:
-        MotionError: `limit` is below 1, or posed coordinates leave the range of double.
+        MotionError: `limit` is no whole number of at least 1, or posed coordinates leave the range
+            of double.
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
-    if limit is not None and limit < 1:
-        raise MotionError("limit", f"is {limit}", "use a whole number of at least 1")
+    most = NO_LIMIT if limit is None else _whole(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
-    most = NO_LIMIT if limit is None else limit
     query = static_query(trees, bodies, _EXACT, all_pairs=True, limit=most)
     _run(query, trees, None)
     return query.pairs()
+
+
+def _whole(limit: int) -> int:
+    """Return a limit as an int that the kernels can hold."""
+    try:
+        number = operator.index(limit)
+    except TypeError as fault:
+        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1") from fault
+    if isinstance(limit, bool) or number < 1:
+        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1")
+    return min(number, NO_LIMIT)
 
 
 def _run(query: kernels.StaticQuery, trees: Trees, accuracy: Accuracy | None) -> bool:

@@ -201,10 +201,18 @@ def test_pair_limit_gives_so_many_of_the_pairs_sorted() -> None:
         assert set(pairs) <= set(everything)
 
 
-@pytest.mark.parametrize("limit", [0, -1])
-def test_pair_limit_below_one_is_refused(limit: int) -> None:
+@pytest.mark.parametrize("limit", [0, -1, 1.5, "3", float("nan"), True, [1], -(2**70)])
+def test_pair_limit_that_is_no_whole_number_above_0_is_refused(limit: Any) -> None:
     with pytest.raises(MotionError, match=r"^limit: "):
         obbcli.triangle_pairs(Mesh(*soup(2)), Mesh(*soup(2)), limit=limit)
+
+
+def test_pair_limit_beyond_64_bits_is_no_limit() -> None:
+    mesh = Mesh(*bumpy_grid(3))
+
+    everything = obbcli.triangle_pairs(mesh, mesh)
+
+    assert np.array_equal(obbcli.triangle_pairs(mesh, mesh, limit=2**70), everything)
 
 
 @pytest.mark.parametrize(
