@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import itertools
 import os
+import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -255,6 +258,35 @@ def test_builds_in_threads_give_the_same_tree(tmp_path: Path) -> None:
         trees = list(pool.map(lambda _: ObbTree.build(mesh), range(8)))
 
     assert all(saved(tree, tmp_path) == alone for tree in trees)
+
+
+def test_other_threads_run_while_levels_are_counted() -> None:
+    tree = ObbTree.build(Mesh(*soup(60_000)))
+    turns = [0]
+    is_over = Event()
+
+    def take_turns() -> None:
+        while not is_over.is_set():
+            turns[0] += 1
+            time.sleep(0)
+
+    interval = sys.getswitchinterval()
+    # Nobody is interrupted: a thread runs only while another one lets it.
+    sys.setswitchinterval(1e6)
+    other = Thread(target=take_turns)
+    other.start()
+    seen = []
+    try:
+        for _ in range(100):
+            before = turns[0]
+            tree.kernel.levels()
+            seen.append(turns[0] - before)
+    finally:
+        sys.setswitchinterval(interval)
+        is_over.set()
+        other.join()
+
+    assert max(seen) > 0
 
 
 @pytest.mark.parametrize("share", [False, True], ids=["soup", "shared vertices"])

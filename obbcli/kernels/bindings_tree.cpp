@@ -35,14 +35,20 @@ void init_tree(Tree* self, Rows<double, 3> vertices, Rows<std::uint32_t, 3> corn
 using Built = std::tuple<Owned<std::uint8_t, -1, 64>, Owned<std::uint32_t, -1>, int>;
 
 Built finish_build(obb::TreeBuilder& builder) {
-    auto nodes = builder.take_nodes();
-    auto ids = builder.triangle_ids();
+    std::vector<obb::Node> nodes;
+    std::vector<std::uint32_t> ids;
+    {
+        nb::gil_scoped_release release;
+        nodes = builder.take_nodes();
+        ids = builder.triangle_ids();
+    }
     const std::size_t node_count = nodes.size(), id_count = ids.size();
     return {owned<Owned<std::uint8_t, -1, 64>>(std::move(nodes), {node_count, 64}),
             owned<Owned<std::uint32_t, -1>>(std::move(ids), {id_count}), builder.scale_exponent()};
 }
 
 std::vector<std::tuple<std::uint64_t, std::uint64_t, double>> levels_of(const Tree& tree) {
+    nb::gil_scoped_release release; // only numbers are made here
     std::vector<std::tuple<std::uint64_t, std::uint64_t, double>> levels;
     for (const obb::Level& level : obb::tree_levels(tree.view)) {
         levels.emplace_back(level.box_count, level.leaf_count, level.volume);
