@@ -65,6 +65,17 @@ def test_public_names_are_there(name):
     assert name in dir(obbcli)
 
 
+def test_object_that_outlives_the_interpreter_ends_in_silence():
+    code = """
+import ctypes, obbcli
+kept = obbcli.Pose().kernel
+ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+"""
+    child = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+
+    assert (child.stdout, child.stderr) == ("", "")
+
+
 def test_names_lead_to_one_object():
     assert obbcli.Pose is obbcli.Pose
     from obbcli.motion import Pose

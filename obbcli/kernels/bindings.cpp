@@ -16,6 +16,7 @@ bool keeps_denormals() {
 } // namespace
 
 NB_MODULE(_core, m) {
+    nb::set_leak_warnings(false); // what a caller still holds at exit is no leak
     nb::exception<obb::TreeError>(m, "TreeError", PyExc_RuntimeError);
     m.def("keeps_denormals", &keeps_denormals);
     bind_tree(m);
