@@ -181,6 +181,33 @@ def test_iteration_limit_of_many_slices_is_kept_to_the_pop() -> None:
     assert whole.status is Status.SEPARATED
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+def test_pop_takes_few_triangles_out_of_a_large_leaf(swapped: bool) -> None:
+    # So that the stack stays small and clocks are looked at, whatever a leaf holds.
+    large = ObbTree.build(Mesh(*bumpy_grid(60)), max_depth=0)
+    two = Mesh(np.array([[25.0, 25, 0.1], [35, 25, 0.2], [30, 35, 0]]), [(0, 1, 2), (0, 2, 1)])
+    pair = (two, large) if swapped else (large, two)
+    before = (0, 0)
+    for most in range(1, 300):
+        stats = obbcli.collide(*pair, accuracy=Accuracy(max_iterations=most)).stats
+        after = (stats.box_tests, stats.triangle_tests)
+
+        assert sum(after) - sum(before) <= 100
+        before = after
+
+
+@pytest.mark.parametrize("counts", [(63, 1), (64, 1), (65, 2), (128, 129), (200, 200)])
+def test_large_leaves_give_every_pair_once(counts: tuple[int, int]) -> None:
+    surfaces = [soup(count, seed) for seed, count in enumerate(counts)]
+    a, b = (ObbTree.build(Mesh(*s), leaf_size=1000) for s in surfaces)
+    (va, fa), (vb, fb) = surfaces
+
+    pairs = [tuple(pair) for pair in obbcli.triangle_pairs(a, b).tolist()]
+
+    assert pairs == mesh_pairs(va, fa, vb, fb)
+    assert obbcli.collide(a, b).collides == bool(pairs)
+
+
 def test_timeout_leaves_the_answer_open() -> None:
     a, b = _sheets()
 

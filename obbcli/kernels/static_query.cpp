@@ -88,6 +88,7 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
 void StaticQuery::reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
                         Side& side) const {
     side.ref = ref;
+    side.next = ref.begin;
     side.is_open = false;
     if (ref.is_triangle()) {
         side.triangle = body.triangle_in_frame(ref);
@@ -158,13 +159,13 @@ template <bool kOpensA>
 void StaticQuery::open() {
     const PosedTree& body = kOpensA ? a_ : b_;
     const NodeRef ref = kOpensA ? stack_.back().a.ref : stack_.back().b.ref;
-    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
-    stack_.pop_back();
     const Node& node = body.tree().node(ref);
     if (TreeView::is_leaf(node)) {
-        open_leaf<kOpensA>(ref, other);
+        open_leaf<kOpensA>();
         return;
     }
+    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
+    stack_.pop_back();
     std::array<Side, 2> children;
     const auto apart = reach_children<kOpensA>(TreeView::children(ref, node), other, children);
     std::size_t last = 1;
@@ -179,11 +180,23 @@ void StaticQuery::open() {
     }
 }
 
+// Pushes the leaf's next triangles and, while there are more, leaves the leaf below them: leaves
+// may hold whole meshes, and neither the stack nor the time between two looks at the clock should.
 template <bool kOpensA>
-void StaticQuery::open_leaf(const NodeRef& leaf, const Side& other) {
+void StaticQuery::open_leaf() {
+    constexpr std::uint32_t kTrianglesAPop = 64;
+    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
+    Side& leaf = kOpensA ? stack_.back().a : stack_.back().b;
+    const NodeRef ref = leaf.ref;
+    const std::uint32_t begin = leaf.next;
+    const std::uint32_t end = begin + std::min(kTrianglesAPop, ref.end - begin);
+    leaf.next = end;
+    if (end == ref.end) {
+        stack_.pop_back();
+    }
     Side child;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-        reach(kOpensA ? a_ : b_, TreeView::triangle_ref(leaf, i), 0, child);
+    for (std::uint32_t i = begin; i < end; ++i) {
+        reach(kOpensA ? a_ : b_, TreeView::triangle_ref(ref, i), 0, child);
         if (!(kOpensA ? are_apart(child, other) : are_apart(other, child))) {
             push<kOpensA>(child, other);
         }
@@ -213,6 +226,7 @@ std::array<bool, 2> StaticQuery::reach_children(const std::array<NodeRef, 2>& re
     for (std::size_t k = 0; k < 2; ++k) {
         if (mask[k] == 0) {
             children[k].ref = refs[k];
+            children[k].next = refs[k].begin;
             children[k].is_open = is_open(*nodes[k], refs[k], max_depth);
             children[k].box = lane(boxes, k);
         }

@@ -93,7 +93,8 @@ class StaticQuery {
     // along: its box, or the triangle that needs none.
     struct Side {
         NodeRef ref;
-        bool is_open; // has children or triangles to descend to
+        std::uint32_t next; // of a leaf's triangles, the first that was not yet pushed
+        bool is_open;       // has children or triangles to descend to
         Obb box;
         Triangle triangle;
     };
@@ -110,7 +111,7 @@ class StaticQuery {
     template <bool kOpensA>
     void open();
     template <bool kOpensA>
-    void open_leaf(const NodeRef& leaf, const Side& other);
+    void open_leaf();
     template <bool kOpensA>
     [[nodiscard]] std::array<bool, 2> reach_children(const std::array<NodeRef, 2>& refs,
                                                      const Side& other,
