@@ -131,19 +131,48 @@ def test_depth_0_compares_the_root_boxes(fit: Any) -> None:
     assert set(said) == {Status.OVERLAP_AT_START, Status.SEPARATED}
 
 
-def test_error_bound_covers_a_corner_of_a_box_far_from_what_it_holds() -> None:
+@pytest.mark.parametrize("exponent", [0, -200, -600, -850])
+def test_error_bound_covers_a_corner_of_a_box_far_from_what_it_holds(exponent: int) -> None:
     # Specks at two corners of a square; the other surface lies at a third one, 1 away from both.
+    # It also has a triangle of size 1 far away, which sets the scale at which boxes are tested.
     speck = np.array([[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.0, 1e-9, 0.0]])
     faces = [(0, 1, 2), (3, 4, 5)]
-    specks = np.concatenate((speck, speck + np.array([1.0, 1.0, 0.0])))
+    unit = 2.0**exponent
+    specks = np.concatenate((speck, speck + np.array([1.0, 1.0, 0.0]))) * unit
     a = ObbTree.build(Mesh(specks, faces), "axis-aligned")
-    b = Mesh(np.concatenate((speck, speck)) + np.array([1.0, 0.0, 0.0]), faces)
+    third = (np.concatenate((speck, speck)) + np.array([1.0, 0.0, 0.0])) * unit
+    b = Mesh(np.concatenate((third, speck * 1e9 + 100.0)), [*faces, (6, 7, 8)])
+    coarse = Accuracy(max_depth_a=0)
 
-    answer = obbcli.collide(a, b, accuracy=Accuracy(max_depth_a=0))
+    answer = obbcli.collide(a, ObbTree.build(b, split="center"), accuracy=coarse)
 
     assert (answer.status, answer.approximate) == (Status.OVERLAP_AT_START, True)
-    assert 1.0 - 1e-8 <= answer.error_bound <= 1.5
+    assert 1.0 - 1e-8 <= answer.error_bound / unit <= 1.5
     assert obbcli.collide(a, b).status is Status.SEPARATED
+
+
+def test_error_bound_counts_how_far_a_pose_is_from_orthonormal() -> None:
+    # A speck beside a needle whose pose is skewed by 6e-10, which widens what boxes call contact.
+    speck = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * 1e-9
+    specks = ObbTree.build(Mesh(speck, [(0, 1, 2), (0, 1, 3)]), "axis-aligned")
+    corners = [[-0.2571, 0.8779, 0.0712], [0.1223, -0.4184, -0.034], [0.0007, -0.0015, 0.0002]]
+    needle = Mesh(np.array(corners), [(0, 1, 2)])
+    turn = [[0.4879, 0.8702, -0.0688], [0.0224, 0.0663, 0.9975], [0.8726, -0.4882, 0.0128]]
+    left, _, right = np.linalg.svd(turn)
+    rotation = left @ right @ (np.eye(3) + 3e-10 * (1 - np.eye(3)))
+    away = np.array([-3.733, -1.0611, 0.0635])
+    widest = 0.0
+    for gap in np.geomspace(1e-6, 1e-3, 60):
+        pose = Pose(rotation, gap * away)
+
+        answer = obbcli.collide(specks, Body(needle, pose), accuracy=Accuracy(max_depth_a=0))
+
+        if answer.approximate:
+            world = posed(needle.vertices, rotation, pose.translation)
+            square = mesh_distance_squared(speck, specks.mesh.triangles, world, [(0, 1, 2)])[0]
+            assert square <= Fraction(answer.error_bound) ** 2
+            widest = float(square) ** 0.5
+    assert 1e-4 < widest < 1e-3
 
 
 def _sheets() -> tuple[ObbTree, ObbTree]:
