@@ -17,6 +17,10 @@ namespace {
 
 // Bounds this close, as a share of the distance, are settled: a few units in its last place.
 constexpr double kSettled = 0x1p-50;
+// After so many pairs of triangles of about the same distance (plates face to face have thousands)
+// it is enough to know the rest to a unit in the last place of the scene's size.
+constexpr std::uint64_t kManyTies = 256;
+constexpr double kSettledOfMany = 0x1p-50;
 // So many pairs of triangles are measured one by one rather than by smaller boxes.
 constexpr std::uint32_t kBatch = 6;
 // A search that takes more pops than this does pairs of so few triangles depth-first: the queue
@@ -225,7 +229,11 @@ double DistanceQuery::high_in_unit(double length, int exponent) const {
 }
 
 bool DistanceQuery::is_settled(double key) const {
-    return high_ - key <= std::max(tolerance_, kSettled * high_);
+    double slack = kSettled * high_;
+    if (counts_.exact_triangle_tests > kManyTies) {
+        slack = std::max(slack, std::min(kSettledOfMany, 0x1p-20 * high_));
+    }
+    return high_ - key <= std::max(tolerance_, slack);
 }
 
 void DistanceQuery::add(const Pair& pair) {
