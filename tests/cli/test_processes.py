@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 RUN = "import sys; from obbcli.cli import main; sys.exit(main(sys.argv[1:]))"
-# A real signal, sent between two slices of the build.
+# A real signal, sent between two slices of the build. Background jobs of a shell ignore it and hand
+# that down, so Python's handler is set anew.
 INTERRUPTED_BUILD = """
 import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from obbcli import kernels
 from obbcli.cli import main
 
@@ -39,6 +41,7 @@ sys.exit(main(sys.argv[1:]))
 # The same between two slices of a question, the second of which has something proven to tell.
 INTERRUPTED_QUERY = """
 import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from obbcli import contact
 from obbcli.cli import main
 
