@@ -174,6 +174,18 @@ def test_check_refuses_a_vertex_moved_out_and_one_that_is_not_there() -> None:
     refuses(replace(arrays, corners=corners), "uses a vertex that is not there")
 
 
+@pytest.mark.parametrize("corner", range(3))
+@pytest.mark.parametrize("axis", range(3))
+def test_check_refuses_the_only_triangle_where_it_is_nowhere(corner: int, axis: int) -> None:
+    arrays = arrays_of(soup(1))
+    vertices = arrays.vertices.copy()
+    vertices[corner, axis] = np.nan
+    refuses(replace(arrays, vertices=vertices), "a vertex is not made of usable numbers")
+    corners = arrays.corners.copy()
+    corners[0, corner] = 3
+    refuses(replace(arrays, corners=corners), "uses a vertex that is not there")
+
+
 @pytest.mark.parametrize("where", ["first", "last", "beyond", "one less", "one more", "leaf"])
 def test_check_refuses_a_moved_split(where: str) -> None:
     arrays = arrays_of(soup(40))

@@ -2,6 +2,7 @@
 
 #include "scale.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace obb {
@@ -25,6 +26,12 @@ bool is_sound(const Node& node) {
     }
     // Shorter or longer quaternions lose digits in axes_of().
     return sound && length > 0.25f && length < 64.0f;
+}
+
+bool is_finite(const Triangle& triangle) {
+    return std::ranges::all_of(triangle, [](const Vec3& v) {
+        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    });
 }
 
 // |A_i . (x - c)| with its rounding error and the axes' defect of a few ulps added.
@@ -67,6 +74,8 @@ std::optional<std::string> tree_check(const TreeView& tree, std::uint32_t leaf_s
     std::vector<NodeRef> stack;
     if (tree.triangle_count() > 1) {
         stack.push_back(tree.root());
+    } else if (!is_finite(tree.triangle(0))) { // which no box holds
+        return "a vertex is not made of usable numbers";
     }
     std::uint32_t next_slot = 0;
     while (!stack.empty()) {
