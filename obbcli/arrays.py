@@ -39,7 +39,7 @@ def as_floats(
     try:
         # A copy, so that a caller who writes to the source later changes no answer.
         array = np.array(value, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as fault:
+    except (TypeError, ValueError, OverflowError) as fault:
         raise error(name, f"expected numbers of shape {wanted}", f"{fault}") from fault
     if array.ndim != len(shape) or any(
         n is not None and n != m for n, m in zip(shape, array.shape, strict=True)

@@ -20,6 +20,7 @@ from obbcli.question import (
     box_limits,
     damaged,
     duration_of,
+    out_of_range,
     pivot_of,
     static_query,
     trees_of,
@@ -184,14 +185,16 @@ class Query:
         (a, b), (tree_a, tree_b) = self._bodies, self._trees
         accuracy = self._accuracy
         coarse, depth_a, depth_b = box_limits(accuracy)
+        # Before the query: what a damaged tree makes of its pivot is no fault of the motion.
+        screw_a, screw_b = _screw(a, tree_a), _screw(b, tree_b)
         try:
             return kernels.ContactQuery(
                 tree_a.kernel,
                 a.pose.kernel,
-                _screw(a, tree_a),
+                screw_a,
                 tree_b.kernel,
                 b.pose.kernel,
-                _screw(b, tree_b),
+                screw_b,
                 duration=self._duration,
                 time_tolerance=self._time_tolerance(),
                 distance_tolerance=(
@@ -204,7 +207,7 @@ class Query:
                 any_contact=self._any_contact,
             )
         except ValueError as fault:
-            raise MotionError("motion", str(fault), "move or scale the bodies") from fault
+            raise out_of_range(self._trees, "motion", fault) from fault
 
     def _time_tolerance(self) -> float:
         tolerance = self._accuracy.time_tolerance

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.errors import MotionError
 from obbcli.motion import as_body
-from obbcli.question import POPS_A_SLICE, box_limits, damaged, trees_of
+from obbcli.question import POPS_A_SLICE, box_limits, damaged, out_of_range, trees_of
 from obbcli.results import Distance, QueryStats
 
 if TYPE_CHECKING:
@@ -66,7 +65,7 @@ def measure(
         is_complete = _run(query, accuracy)
         low, high, point_a, point_b, triangle_a, triangle_b = query.bounds()
     except ValueError as fault:
-        raise MotionError("pose", str(fault), "move or scale the bodies") from fault
+        raise out_of_range(trees, "pose", fault) from fault
     except kernels.TreeError as fault:
         raise damaged(trees, fault) from fault
     tree_a, tree_b = trees

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
+    from obbcli.errors import ObbError
     from obbcli.motion import Body, Shape
 
 _NO_DEPTH_LIMIT = 2**32 - 1
@@ -68,6 +69,8 @@ def duration_of(duration: float | None, bodies: tuple[Body, Body]) -> float:
         seconds = float(duration)
     except (TypeError, ValueError) as fault:
         raise MotionError("duration", f"is {duration!r}", "use a number of seconds") from fault
+    except OverflowError as fault:
+        raise MotionError("duration", str(fault), "use a finite number of seconds") from fault
     if isinstance(duration, str) or not 0 <= seconds < math.inf:
         raise MotionError(
             "duration", f"is {duration!r}", "use a finite number of at least 0 seconds"
@@ -116,9 +119,19 @@ def static_query(
             limit,
         )
     except ValueError as fault:
-        raise MotionError("pose", str(fault), "move or scale the bodies") from fault
+        raise out_of_range(trees, "pose", fault) from fault
     except kernels.TreeError as fault:
         raise damaged(trees, fault) from fault
+
+
+def out_of_range(trees: Trees, where: str, fault: ValueError) -> ObbError:
+    """Return the error for numbers beyond doubles: a damaged tree's own, or what motion makes."""
+    for tree in trees:
+        try:
+            tree.check()
+        except TreeFileError as damage:
+            return damage
+    return MotionError(where, str(fault), "move or scale the bodies")
 
 
 def damaged(trees: Trees, fault: Exception) -> TreeFileError:

@@ -11,11 +11,13 @@ from tree_meshes import bumpy_grid, soup
 from tree_oracles import FIXED, forge
 
 import obbcli
-from obbcli import Accuracy, Body, Mesh, ObbTree, Pose, TreeFileError
+from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, TreeFileError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
 def file_of(surface: Any, folder: Path, **options: Any) -> bytes:
@@ -47,6 +49,10 @@ def _questions(tree: ObbTree) -> Iterator[Any]:
     yield lambda: obbcli.collide(tree, turned, accuracy=limits)
     yield lambda: obbcli.collide(turned, tree, accuracy=Accuracy(max_depth_a=2, leaves="boxes"))
     yield lambda: obbcli.triangle_pairs(tree, tree)
+    yield lambda: obbcli.distance(tree, Body(tree, Pose(None, (9.0, 0.0, 0.0))), limits)
+    for motion in (Motion(X), Motion(X, Z), Motion(None, Z, (3.0, 0.0, 0.0))):
+        moving = Body(tree, turned.pose, motion)
+        yield lambda moving=moving: obbcli.first_contact(moving, tree, 1.0, limits)
     yield tree.check
     yield lambda: tree.levels
 
@@ -142,3 +148,32 @@ def test_damaged_tree_of_one_triangle_is_refused_by_every_question(tmp_path: Pat
         for pair in ((tree, Mesh(*soup(2))), (Mesh(*soup(2)), tree)):
             with pytest.raises(TreeFileError, match="uses a vertex that is not there"):
                 ask(*pair)
+
+
+@pytest.mark.parametrize("triangle_count", [1, 12])
+def test_vertex_that_is_no_number_is_the_trees_fault_and_not_the_motions(
+    triangle_count: int, tmp_path: Path
+) -> None:
+    data = file_of(soup(triangle_count), tmp_path)
+    far = Mesh(soup(3)[0] + 20.0, soup(3)[1])
+    fast = Motion((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
+    start = data.rindex(soup(triangle_count)[0].tobytes())
+    damaged = bytearray(data)
+    for place in range(start, start + 72 * triangle_count, 8):
+        struct.pack_into("<d", damaged, place, np.nan)
+    tree = ObbTree.from_bytes(bytes(damaged), verify=False)
+
+    for pair in ((tree, far), (far, tree)):
+        with pytest.raises(TreeFileError, match="build it again"):
+            obbcli.distance(*pair)
+        with pytest.raises(TreeFileError, match="build it again"):
+            obbcli.first_contact(Body(pair[0], motion=fast), Body(pair[1], motion=Motion(X, Z)))
+
+
+def test_box_that_is_no_number_is_the_trees_fault_and_not_the_motions(tmp_path: Path) -> None:
+    data = file_of(soup(12), tmp_path)
+    damaged = _with_nan(data, FIXED.unpack_from(data)[2], "d")
+
+    for motion in (Motion(X), Motion(X, Z, (0.0, 0.0, 0.0))):
+        with pytest.raises(TreeFileError, match="a box is not made of usable numbers"):
+            obbcli.first_contact(Body(damaged, motion=motion), Mesh(soup(3)[0] + 20.0, soup(3)[1]))

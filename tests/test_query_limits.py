@@ -282,6 +282,8 @@ def test_pair_limit_beyond_64_bits_is_no_limit() -> None:
         ("duration", {"duration": "x"}),
         ("duration", {"duration": "1"}),
         ("duration", {"duration": [1.0]}),
+        ("duration", {"duration": 10**400}),
+        ("duration", {"duration": -(10**400)}),
     ],
     ids=str,
 )
