@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from obbcli.motion import Body, Motion, PathMotion
 from obbcli.question import pivot_of
+from obbcli.relay import Leg, Relay, length_of
 from obbcli.results import FirstContact, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -26,33 +27,12 @@ if TYPE_CHECKING:
     from obbcli.contact import Query
     from obbcli.pose import Pose
     from obbcli.question import Trees
-    from obbcli.results import QueryStats
+    from obbcli.relay import Asker
     from obbcli.tree import ObbTree
-
-    Asker = Callable[[Body, Body, float, Accuracy], Query]
 
 # Of the coordinates: posing a vertex thrice (12 u each), a matrix product (16 u) and the pose in
 # closed form (28 u) come to a third of this; the rest lets the kernels prove closeness within it.
 _ROUNDING = 2.0**-45
-
-Counts = tuple[int, int, int, int]
-
-
-class Leg(NamedTuple):
-    """A time in which both bodies have constant velocities.
-
-    Attributes:
-        start: s, of the whole question's clock.
-        duration: s, rounded up.
-        bodies: posed at the start.
-        slack: mesh units; by no more than this does the bodies' distance on their true paths differ
-            from that of `bodies`, up to the start of the next leg.
-    """
-
-    start: float
-    duration: float
-    bodies: tuple[Body, Body]
-    slack: float
 
 
 def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterator[Leg]:
@@ -69,19 +49,8 @@ def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterato
     pairs = tuple(zip(bodies, trees, strict=True))
     for start, end in zip(starts, [*starts[1:], duration], strict=True):
         (a, error_a), (b, error_b) = (_placed(body, tree, start) for body, tree in pairs)
-        jumps = sum(_jump(body, tree, end) for body, tree in pairs) if end > start else 0.0
-        yield Leg(start, _length(start, end), (a, b), error_a + error_b + jumps)
-
-
-def _length(start: float, end: float) -> float:
-    """Return end - start, rounded up."""
-    length = end - start
-    return length if _reaches(start, length, end) else math.nextafter(length, math.inf)
-
-
-def _reaches(start: float, length: float, end: float) -> bool:
-    """Return whether start + length >= end, exactly."""
-    return math.fsum((start, length, -end)) >= 0
+        jumps = sum(jump_at(body, tree, end) for body, tree in pairs) if end > start else 0.0
+        yield Leg(start, length_of(start, end), (a, b), error_a + error_b + jumps)
 
 
 def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
@@ -94,7 +63,7 @@ def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
         if piece.is_at_rest or time == motion.times[first]:
             return Body(tree, motion.poses[first], piece), 0.0
         pose = motion.pose_at(time)
-        error = _rounding(tree, motion.poses[first].translation, pose.translation)
+        error = rounding_of(tree, motion.poses[first].translation, pose.translation)
         now = Motion(piece.linear_velocity, piece.angular_velocity, pose.translation)
         return Body(tree, pose, now), error
     if motion.is_at_rest or time == 0:
@@ -103,16 +72,16 @@ def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
     pivot = pivot_of(body, tree) if spin.any() else np.zeros(3)
     pose = motion.pose_at(time, body.pose, pivot)
     shift = time * velocity
-    error = _rounding(tree, body.pose.translation, pose.translation, pivot, pivot, shift)
+    error = rounding_of(tree, body.pose.translation, pose.translation, pivot, pivot, shift)
     return Body(tree, pose, Motion(velocity, spin, pivot + shift)), error
 
 
-def _rounding(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
+def rounding_of(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
     """Bound what rounding moves a vertex by where these are added up."""
-    return _ROUNDING * sum(map(_norm, (*vectors, np.abs(tree.bounds).max(axis=0))))
+    return _ROUNDING * sum(map(norm, (*vectors, np.abs(tree.bounds).max(axis=0))))
 
 
-def _jump(body: Body, tree: ObbTree, time: float) -> float:
+def jump_at(body: Body, tree: ObbTree, time: float) -> float:
     """Bound how far any vertex is from the next pose where a piece ends at this time."""
     motion = body.motion
     if not isinstance(motion, PathMotion):
@@ -122,7 +91,7 @@ def _jump(body: Body, tree: ObbTree, time: float) -> float:
         return 0.0
     here, there = motion.poses[index - 1 : index + 1]
     end = motion.piece(index - 1).pose_at(time - float(motion.times[index - 1]), here)
-    return _apart(tree, end, there) + _rounding(tree, here.translation, there.translation)
+    return _apart(tree, end, there) + rounding_of(tree, here.translation, there.translation)
 
 
 def _apart(tree: ObbTree, a: Pose, b: Pose) -> float:
@@ -131,15 +100,16 @@ def _apart(tree: ObbTree, a: Pose, b: Pose) -> float:
     center = 0.5 * low + 0.5 * high
     turned = a.rotation - b.rotation
     middle = turned @ center + (a.translation - b.translation)
-    return _norm(middle) + math.hypot(*turned.ravel().tolist()) * _norm(high - center)
+    return norm(middle) + math.hypot(*turned.ravel().tolist()) * norm(high - center)
 
 
-def _norm(vector: NDArray[np.float64]) -> float:
+def norm(vector: NDArray[np.float64]) -> float:
+    """Return a vector's length."""
     return math.hypot(*vector.tolist())
 
 
-class LegQueries:
-    """The questions about legs, one after the other, as one that can be advanced.
+class LegQueries(Relay):
+    """The question about bodies with paths, leg by leg.
 
     A leg is first asked with its slack as clearance: apart is then a proof for the true paths, and
     the lower bound too. Where that is contact, the leg's own path is asked for its evidence, and
@@ -161,17 +131,9 @@ class LegQueries:
         accuracy: Accuracy,
         ask: Asker,
     ) -> None:
-        self._legs = legs_of(bodies, trees, duration)
-        self._duration = duration
-        self._accuracy = accuracy
-        self._ask = ask
-        self._done: Counts = (0, 0, 0, 0)
-        self._present: Counts = (0, 0, 0, 0)
+        super().__init__(legs_of(bodies, trees, duration), duration, accuracy, ask)
         self._near: FirstContact | None = None
-        self._answer: FirstContact | None = None
         self._is_at_end = False  # only the instant after the leg of the near contact is left
-        self._leg = next(self._legs)
-        self._query = self._ask_wide(self._leg)
 
     @property
     def lower_bound(self) -> float:
@@ -181,35 +143,10 @@ class LegQueries:
             return self._clock(self._query.lower_bound, up=False)
         return self._duration if known.time is None else known.time
 
-    @property
-    def counts(self) -> Counts:
-        """Box tests, triangle tests, exact ones and pops so far."""
-        return _sum(self._done, self._present)
-
-    def answer(self, stats: QueryStats) -> FirstContact:
-        """Return what is known now."""
-        if self._answer is None:
-            return _unresolved(self.lower_bound, stats)
-        return replace(self._answer, stats=stats)
-
-    def step(self, pops: int) -> bool:
-        """Take at most so many pairs from the queue; true when the answer is complete."""
-        found = self._query.advance(pops)
-        stats = found.stats
-        self._present = (
-            stats.box_tests,
-            stats.triangle_tests,
-            stats.exact_triangle_tests,
-            stats.pops,
-        )
-        if self._query.is_finished:
-            self._answer = self._conclude(found)
-        return self._answer is not None
-
     def _conclude(self, found: FirstContact) -> FirstContact | None:
         """Return the answer after that of the present question, or ask the next one."""
         if found.status is Status.UNRESOLVED:
-            return _unresolved(self.lower_bound, found.stats)
+            return self._unresolved(found.stats)
         if found.time is not None:
             found = self._on_clock(found)
             if self._near is not None or self._leg.slack == 0:
@@ -221,7 +158,7 @@ class LegQueries:
         if self._near is None:
             if leg is None:
                 return FirstContact(status=Status.SEPARATED, stats=found.stats)
-            self._go_on(leg, self._ask_wide)
+            self._go_on(leg, self._ask_about)
             return None
         # Contact at the very end of a leg may show only in the pose after it.
         if leg is None or self._is_at_end or not self._is_soon(leg.start):
@@ -235,16 +172,10 @@ class LegQueries:
         assert self._near.time is not None
         return time - self._near.time <= (self._accuracy.time_tolerance or 0.0)
 
-    def _go_on(self, leg: Leg, ask: Callable[[Leg], Query]) -> None:
-        self._done = _sum(self._done, self._present)
-        self._present = (0, 0, 0, 0)
-        self._leg = leg
-        self._query = ask(leg)
-
     def _ask_close(self, leg: Leg) -> Query:
-        return self._ask(*leg.bodies, leg.duration, self._accuracy)
+        return super()._ask_about(leg)
 
-    def _ask_wide(self, leg: Leg) -> Query:
+    def _ask_about(self, leg: Leg) -> Query:
         clearance = self._accuracy.clearance + leg.slack
         return self._ask(*leg.bodies, leg.duration, replace(self._accuracy, clearance=clearance))
 
@@ -267,22 +198,3 @@ class LegQueries:
             time=low,
             time_bounds=(low, end),
         )
-
-    def _clock(self, time: float, *, up: bool) -> float:
-        """Return a leg's time on the whole question's clock, rounded down or up."""
-        start = self._leg.start
-        total = start + time
-        rest = math.fsum((start, time, -total))
-        if up and rest > 0:
-            total = math.nextafter(total, math.inf)
-        elif not up and rest < 0:
-            total = math.nextafter(total, 0.0)
-        return min(total, self._duration)
-
-
-def _sum(a: Counts, b: Counts) -> Counts:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
-
-
-def _unresolved(low: float, stats: QueryStats) -> FirstContact:
-    return FirstContact(status=Status.UNRESOLVED, time=low, time_bounds=(low, None), stats=stats)

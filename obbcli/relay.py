@@ -1,0 +1,139 @@
+"""Questions asked one after the other, about legs: times in which velocities are constant.
+
+`legs` proves motion through poses with it, and `sampled` steps.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from obbcli.results import FirstContact, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.contact import Query
+    from obbcli.motion import Body
+    from obbcli.results import QueryStats
+
+    Asker = Callable[[Body, Body, float, Accuracy], Query]
+
+Counts = tuple[int, int, int, int]
+
+
+class Leg(NamedTuple):
+    """A time in which both bodies have constant velocities.
+
+    Attributes:
+        start: s, of the whole question's clock.
+        duration: s, rounded up.
+        bodies: posed at the start.
+        slack: mesh units; by no more than this does the bodies' distance on their true paths differ
+            from that of `bodies`, up to the start of the next leg.
+    """
+
+    start: float
+    duration: float
+    bodies: tuple[Body, Body]
+    slack: float
+
+
+def length_of(start: float, end: float) -> float:
+    """Return end - start, s, rounded up."""
+    length = end - start
+    reaches = math.fsum((start, length, -end)) >= 0
+    return length if reaches else math.nextafter(length, math.inf)
+
+
+class Relay(ABC):
+    """The questions about legs as one that can be advanced.
+
+    Args:
+        legs: at least one, earliest first.
+        duration: s, of the whole.
+        accuracy: what each question is asked with.
+        ask: makes the question about a leg.
+    """
+
+    def __init__(
+        self, legs: Iterator[Leg], duration: float, accuracy: Accuracy, ask: Asker
+    ) -> None:
+        self._legs = legs
+        self._duration = duration
+        self._accuracy = accuracy
+        self._ask = ask
+        self._done: Counts = (0, 0, 0, 0)
+        self._present: Counts = (0, 0, 0, 0)
+        self._answer: FirstContact | None = None
+        self._leg = next(self._legs)
+        self._query = self._ask_about(self._leg)
+
+    @property
+    @abstractmethod
+    def lower_bound(self) -> float:
+        """No contact in [0, lower_bound): proven. s."""
+
+    @abstractmethod
+    def _conclude(self, found: FirstContact) -> FirstContact | None:
+        """Return the answer after that of the present question, or go on to the next one."""
+
+    @property
+    def counts(self) -> Counts:
+        """Box tests, triangle tests, exact ones and pops so far."""
+        return sum_of(self._done, self._present)
+
+    def answer(self, stats: QueryStats) -> FirstContact:
+        """Return what is known now."""
+        if self._answer is None:
+            return self._unresolved(stats)
+        return replace(self._answer, stats=stats)
+
+    def step(self, pops: int) -> bool:
+        """Take at most so many pairs from the queue; true when the answer is complete."""
+        found = self._query.advance(pops)
+        stats = found.stats
+        self._present = (
+            stats.box_tests,
+            stats.triangle_tests,
+            stats.exact_triangle_tests,
+            stats.pops,
+        )
+        if self._query.is_finished:
+            self._answer = self._conclude(found)
+        return self._answer is not None
+
+    def _go_on(self, leg: Leg, ask: Callable[[Leg], Query]) -> None:
+        self._done = sum_of(self._done, self._present)
+        self._present = (0, 0, 0, 0)
+        self._leg = leg
+        self._query = ask(leg)
+
+    def _ask_about(self, leg: Leg) -> Query:
+        """Return the question about a leg that comes first."""
+        return self._ask(*leg.bodies, leg.duration, self._accuracy)
+
+    def _unresolved(self, stats: QueryStats) -> FirstContact:
+        low = self.lower_bound
+        return FirstContact(
+            status=Status.UNRESOLVED, time=low, time_bounds=(low, None), stats=stats
+        )
+
+    def _clock(self, time: float, *, up: bool) -> float:
+        """Return a leg's time on the whole question's clock, rounded down or up."""
+        start = self._leg.start
+        total = start + time
+        rest = math.fsum((start, time, -total))
+        if up and rest > 0:
+            total = math.nextafter(total, math.inf)
+        elif not up and rest < 0:
+            total = math.nextafter(total, 0.0)
+        return min(total, self._duration)
+
+
+def sum_of(a: Counts, b: Counts) -> Counts:
+    """Return what two questions cost together."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
