@@ -25,12 +25,14 @@ from obbcli.question import (
     static_query,
     trees_of,
 )
+from obbcli.relay import sum_of
 from obbcli.results import FirstContact, QueryStats, Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from obbcli.motion import Body, Shape
+    from obbcli.relay import Counts
     from obbcli.results import Vector
     from obbcli.tree import ObbTree
 
@@ -143,8 +145,10 @@ class Query:
         try:
             while not self._is_finished:
                 pops = POPS_A_SLICE if left is None else min(left, POPS_A_SLICE)
+                before = self._counts()[3]
                 self._is_finished = self._step(pops)
-                left = None if left is None else left - pops
+                if left is not None:
+                    left = max(left - max(self._counts()[3] - before, 1), 0)
                 if left == 0 or (stop is not None and time.perf_counter() >= stop):
                     break
         except kernels.TreeError as fault:
@@ -292,17 +296,17 @@ class Query:
             stats=self._stats(),
         )
 
-    def _stats(self) -> QueryStats:
-        still = self._at_start.counts()
+    def _counts(self) -> Counts:
+        """Box tests, triangle tests, exact ones and pops so far."""
         moving = (0, 0, 0, 0) if self._moving is None else self._moving.counts()
         if self._legs is not None:
             moving = self._legs.counts
+        return sum_of(self._at_start.counts(), moving)
+
+    def _stats(self) -> QueryStats:
         tree_a, tree_b = self._trees
         return QueryStats(
-            still[0] + moving[0],
-            still[1] + moving[1],
-            still[2] + moving[2],
-            still[3] + moving[3],
+            *self._counts(),
             tree_a.node_count,
             tree_b.node_count,
             tree_a.possible_node_count,

@@ -274,6 +274,15 @@ def test_query_goes_on_pop_by_pop_to_the_same_answer(seed: int):
     assert query.lower_bound == (2.0 if whole.time is None else whole.time)
 
 
+def test_default_limit_counts_pairs_and_not_pieces():
+    times = np.arange(701)
+
+    answer = obbcli.first_contact(falling(times, *np.linspace(9, 1, 701)), FLOOR)
+
+    assert answer.status is Status.SEPARATED
+    assert 700 <= answer.stats.pops < 100_000
+
+
 def test_limit_leaves_a_proven_bound():
     fall = falling([0, 1, 2, 3], 9, 7, 5, -1)
 
