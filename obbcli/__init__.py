@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from obbcli.mesh import Mesh, load_mesh
     from obbcli.motion import Body, Motion, Pose
     from obbcli.nearest import distance
+    from obbcli.pairs import contacts
     from obbcli.query import collide, triangle_pairs
-    from obbcli.results import Collision, Distance, FirstContact, QueryStats, Status
+    from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
     from obbcli.tree import ObbTree
 
 # A literal, because asking the installed metadata costs three times a bare interpreter's start.
@@ -33,6 +34,7 @@ _HOMES = {
     "Accuracy": "accuracy",
     "Body": "motion",
     "Collision": "results",
+    "Contact": "results",
     "Distance": "results",
     "FirstContact": "results",
     "Mesh": "mesh",
@@ -49,6 +51,7 @@ _HOMES = {
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
     "collide": "query",
+    "contacts": "pairs",
     "distance": "nearest",
     "first_contact": "contact",
     "load_mesh": "mesh",
@@ -59,6 +62,7 @@ __all__ = [
     "Accuracy",
     "Body",
     "Collision",
+    "Contact",
     "Distance",
     "FirstContact",
     "Mesh",
@@ -76,6 +80,7 @@ __all__ = [
     "UnresolvedError",
     "__version__",
     "collide",
+    "contacts",
     "distance",
     "first_contact",
     "load_mesh",

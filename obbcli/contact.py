@@ -10,42 +10,30 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from obbcli import kernels, primitives
+from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.errors import MotionError
 from obbcli.legs import LegQueries
 from obbcli.motion import PathMotion, as_body
 from obbcli.question import (
     POPS_A_SLICE,
-    box_limits,
     damaged,
     duration_of,
-    out_of_range,
-    pivot_of,
+    moves_nothing,
+    moving_query,
     static_query,
+    time_tolerance,
     trees_of,
 )
 from obbcli.relay import sum_of
-from obbcli.results import FirstContact, QueryStats, Status
+from obbcli.results import Contact, FirstContact, QueryStats, Status
+from obbcli.touching import boxes_at_start, contact_at_start, contact_of, unresolved
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from obbcli.motion import Body, Shape
     from obbcli.relay import Counts
-    from obbcli.results import Vector
-    from obbcli.tree import ObbTree
 
 _EXACT = Accuracy()
-# Of the duration: the width asked of a bracket where the caller asks for none.
-_TIME_TOLERANCE = 1e-9
-
-_EVIDENCE = {
-    kernels.Evidence.INTERSECTING: "intersecting",
-    kernels.Evidence.WITHIN_TOLERANCE: "within_tolerance",
-    kernels.Evidence.BOXES: "boxes",
-}
-_FEATURES = ("vertex", "edge", "face")
 
 
 class Query:
@@ -164,137 +152,44 @@ class Query:
         if self._moving is None:
             if not self._at_start.advance(pops):
                 return False
-            if self._at_start.is_contact or (self._moves_nothing() and not self._needs_distance()):
+            if self._at_start.is_contact or self._is_over_at_start():
                 return True
             self._moving = self._moving_query()
         return self._moving.advance(pops)
 
-    def _needs_distance(self) -> bool:
-        return self._accuracy.clearance > 0
-
-    def _moves_nothing(self) -> bool:
-        """Return whether neither body moves against the other."""
-        (a, b), (tree_a, tree_b) = self._bodies, self._trees
-        ma, mb = a.motion, b.motion
-        if self._duration == 0 or (ma.is_at_rest and mb.is_at_rest):
-            return True
-        if (ma.linear_velocity != mb.linear_velocity).any() or (
-            ma.angular_velocity != mb.angular_velocity
-        ).any():
-            return False
-        is_turning = bool(ma.angular_velocity.any())
-        return not is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
+    def _is_over_at_start(self) -> bool:
+        """Return whether what holds at t = 0 holds throughout."""
+        is_still = moves_nothing(self._bodies, self._trees, self._duration)
+        return is_still and not self._accuracy.clearance > 0
 
     def _moving_query(self) -> kernels.ContactQuery:
-        (a, b), (tree_a, tree_b) = self._bodies, self._trees
-        accuracy = self._accuracy
-        coarse, depth_a, depth_b = box_limits(accuracy)
-        # Before the query: what a damaged tree makes of its pivot is no fault of the motion.
-        screw_a, screw_b = _screw(a, tree_a), _screw(b, tree_b)
-        try:
-            return kernels.ContactQuery(
-                tree_a.kernel,
-                a.pose.kernel,
-                screw_a,
-                tree_b.kernel,
-                b.pose.kernel,
-                screw_b,
-                duration=self._duration,
-                time_tolerance=self._time_tolerance(),
-                distance_tolerance=(
-                    -1.0 if accuracy.distance_tolerance is None else accuracy.distance_tolerance
-                ),
-                clearance=accuracy.clearance,
-                boxes_for_leaves=coarse,
-                max_depth_a=depth_a,
-                max_depth_b=depth_b,
-                any_contact=self._any_contact,
-            )
-        except ValueError as fault:
-            raise out_of_range(self._trees, "motion", fault) from fault
+        return moving_query(
+            self._bodies,
+            self._trees,
+            self._duration,
+            replace(self._accuracy, time_tolerance=self._time_tolerance()),
+            any_contact=self._any_contact,
+        )
 
     def _time_tolerance(self) -> float:
-        tolerance = self._accuracy.time_tolerance
-        return _TIME_TOLERANCE * self._duration if tolerance is None else tolerance
+        return time_tolerance(self._accuracy, self._duration)
 
     def _answer(self) -> FirstContact:
         if self._legs is not None:
             return self._legs.answer(self._stats())
+        return FirstContact.of(self._contact(), self._stats())
+
+    def _contact(self) -> Contact:
+        if self._at_start.is_by_boxes:
+            return boxes_at_start(self._at_start.error_bound)
         if self._at_start.is_contact:
-            return self._contact_at_start()
+            return contact_at_start(self._bodies, self._trees, *self._at_start.pairs()[0].tolist())
         if not self._is_finished or (self._moving is not None and self._moving.has_given_up):
-            lo = self.lower_bound
-            return FirstContact(
-                status=Status.UNRESOLVED, time=lo, time_bounds=(lo, None), stats=self._stats()
-            )
+            return unresolved(self.lower_bound)
         found = None if self._moving is None else self._moving.contact()
         if self._moving is None or found is None:
-            return FirstContact(status=Status.SEPARATED, stats=self._stats())
-        low, high, evidence, triangle_a, triangle_b, distance, error_bound = found
-        place = self._moving.place()
-        point_a, point_b, normal, normal_a, normal_b = map(_vector, place[:5])
-        by_boxes = evidence is kernels.Evidence.BOXES
-        # Whether surfaces themselves touch at t = 0 was decided exactly before.
-        is_at_start = high == 0 and (by_boxes or self._accuracy.clearance > 0)
-        return FirstContact(
-            status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
-            time=low,
-            time_bounds=(low, None if by_boxes else high),
-            evidence=_EVIDENCE[evidence],
-            point=_vector([0.5 * p + 0.5 * q for p, q in zip(*place[:2], strict=True)]),
-            point_a=point_a,
-            point_b=point_b,
-            normal=normal,
-            normal_a=normal_a,
-            normal_b=normal_b,
-            triangle_a=None if by_boxes else triangle_a,
-            triangle_b=None if by_boxes else triangle_b,
-            feature="box" if by_boxes else f"{_FEATURES[place[5]]}-{_FEATURES[place[6]]}",
-            distance=None if by_boxes else distance,
-            approximate=by_boxes,
-            error_bound=error_bound,
-            stats=self._stats(),
-        )
-
-    def _contact_at_start(self) -> FirstContact:
-        """Return the answer where the bodies touch at t = 0."""
-        if self._at_start.is_by_boxes:
-            return FirstContact(
-                status=Status.OVERLAP_AT_START,
-                time=0.0,
-                time_bounds=(0.0, None),
-                evidence="boxes",
-                feature="box",
-                approximate=True,
-                error_bound=self._at_start.error_bound,
-                stats=self._stats(),
-            )
-        id_a, id_b = self._at_start.pairs()[0].tolist()
-        (a, b), (tree_a, tree_b) = self._bodies, self._trees
-        # The exact question about the two triangles knows where they meet, and which features.
-        touch = primitives.first_contact(
-            primitives.Triangle(a.pose.apply(tree_a.vertices[tree_a.mesh.triangles[id_a]])),
-            primitives.Triangle(b.pose.apply(tree_b.vertices[tree_b.mesh.triangles[id_b]])),
-        )
-        assert isinstance(touch, primitives.PrimitiveContact)
-        point = _vector(touch.point)
-        return FirstContact(
-            status=Status.OVERLAP_AT_START,
-            time=0.0,
-            time_bounds=(0.0, 0.0),
-            evidence="intersecting",
-            point=point,
-            point_a=point,
-            point_b=point,
-            normal=None if touch.normal is None else _vector(touch.normal),
-            normal_a=None if touch.normal_a is None else _vector(touch.normal_a),
-            normal_b=None if touch.normal_b is None else _vector(touch.normal_b),
-            triangle_a=id_a,
-            triangle_b=id_b,
-            feature=touch.feature,
-            distance=0.0,
-            stats=self._stats(),
-        )
+            return Contact(status=Status.SEPARATED)
+        return contact_of(self._moving, found, self._accuracy.clearance)
 
     def _counts(self) -> Counts:
         """Box tests, triangle tests, exact ones and pops so far."""
@@ -343,18 +238,3 @@ def first_contact(
     accuracy = _EXACT if accuracy is None else accuracy
     query = Query(a, b, duration, accuracy)
     return query.advance(accuracy.max_iterations, accuracy.timeout)
-
-
-def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
-    motion = body.motion
-    # A body that does not turn has no use for a pivot, nor for the pass over its mesh to find one.
-    pivot = pivot_of(body, tree).tolist() if motion.angular_velocity.any() else (0.0, 0.0, 0.0)
-    return kernels.Screw(
-        motion.linear_velocity.tolist(), motion.angular_velocity.tolist(), tuple(pivot)
-    )
-
-
-def _vector(values: Iterable[float]) -> Vector:
-    """Return three floats, without negative zeros."""
-    x, y, z = (float(value) + 0.0 for value in values)
-    return x, y, z

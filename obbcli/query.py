@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import time
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,15 @@ from obbcli.accuracy import Accuracy
 from obbcli.contact import Query
 from obbcli.errors import MotionError
 from obbcli.motion import as_body
-from obbcli.question import NO_LIMIT, POPS_A_SLICE, damaged, duration_of, static_query, trees_of
+from obbcli.question import (
+    NO_LIMIT,
+    POPS_A_SLICE,
+    damaged,
+    duration_of,
+    static_query,
+    trees_of,
+    whole_limit,
+)
 from obbcli.results import Collision, QueryStats, Status
 
 if TYPE_CHECKING:
@@ -124,23 +131,12 @@ def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
-    most = NO_LIMIT if limit is None else _whole(limit)
+    most = NO_LIMIT if limit is None else whole_limit(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
     query = static_query(trees, bodies, _EXACT, all_pairs=True, limit=most)
     _run(query, trees, None)
     return query.pairs()
-
-
-def _whole(limit: int) -> int:
-    """Return a limit as an int that the kernels can hold."""
-    try:
-        number = operator.index(limit)
-    except TypeError as fault:
-        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1") from fault
-    if isinstance(limit, bool) or number < 1:
-        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1")
-    return min(number, NO_LIMIT)
 
 
 def _run(query: kernels.StaticQuery, trees: Trees, accuracy: Accuracy | None) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from obbcli.motion import Body, Shape
 
 _NO_DEPTH_LIMIT = 2**32 - 1
+# Of the duration: the width asked of a bracket where the caller asks for none.
+_TIME_TOLERANCE = 1e-9
 NO_LIMIT = 2**64 - 1
 # Queue pops between two looks at clock and signals: a few milliseconds.
 POPS_A_SLICE = 16_384
@@ -132,6 +135,93 @@ def out_of_range(trees: Trees, where: str, fault: ValueError) -> ObbError:
         except TreeFileError as damage:
             return damage
     return MotionError(where, str(fault), "move or scale the bodies")
+
+
+def moving_query(
+    bodies: tuple[Body, Body],
+    trees: Trees,
+    duration: float,
+    accuracy: Accuracy,
+    *,
+    any_contact: bool = False,
+    each_pair: bool = False,
+) -> kernels.ContactQuery:
+    """Return the kernels' query about bodies of constant velocities, not yet advanced.
+
+    Raises:
+        MotionError: positions leave the range of double.
+        TreeFileError: a tree file is damaged.
+    """
+    (a, b), (tree_a, tree_b) = bodies, trees
+    coarse, depth_a, depth_b = box_limits(accuracy)
+    nearness = accuracy.distance_tolerance
+    screw_a, screw_b = _screw(a, tree_a), _screw(b, tree_b)
+    try:
+        return kernels.ContactQuery(
+            tree_a.kernel,
+            a.pose.kernel,
+            screw_a,
+            tree_b.kernel,
+            b.pose.kernel,
+            screw_b,
+            duration=duration,
+            time_tolerance=time_tolerance(accuracy, duration),
+            distance_tolerance=-1.0 if nearness is None else nearness,
+            clearance=accuracy.clearance,
+            boxes_for_leaves=coarse,
+            max_depth_a=depth_a,
+            max_depth_b=depth_b,
+            any_contact=any_contact,
+            each_pair=each_pair,
+        )
+    except ValueError as fault:
+        raise out_of_range(trees, "motion", fault) from fault
+    except kernels.TreeError as fault:
+        raise damaged(trees, fault) from fault
+
+
+def time_tolerance(accuracy: Accuracy, duration: float) -> float:
+    """Return the width asked of a bracket, s."""
+    asked = accuracy.time_tolerance
+    return _TIME_TOLERANCE * duration if asked is None else asked
+
+
+def moves_nothing(bodies: tuple[Body, Body], trees: Trees, duration: float) -> bool:
+    """Return whether neither of two bodies of constant velocities moves against the other."""
+    (a, b), (tree_a, tree_b) = bodies, trees
+    ma, mb = a.motion, b.motion
+    if duration == 0 or (ma.is_at_rest and mb.is_at_rest):
+        return True
+    if (ma.linear_velocity != mb.linear_velocity).any() or (
+        ma.angular_velocity != mb.angular_velocity
+    ).any():
+        return False
+    is_turning = bool(ma.angular_velocity.any())
+    return not is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
+
+
+def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
+    motion = body.motion
+    # A body that does not turn has no use for a pivot, nor for the pass over its mesh to find one.
+    pivot = pivot_of(body, tree).tolist() if motion.angular_velocity.any() else (0.0, 0.0, 0.0)
+    return kernels.Screw(
+        motion.linear_velocity.tolist(), motion.angular_velocity.tolist(), tuple(pivot)
+    )
+
+
+def whole_limit(limit: int) -> int:
+    """Return a limit as an int that the kernels can hold.
+
+    Raises:
+        MotionError: no whole number of at least 1.
+    """
+    try:
+        number = operator.index(limit)
+    except TypeError as fault:
+        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1") from fault
+    if isinstance(limit, bool) or number < 1:
+        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1")
+    return min(number, NO_LIMIT)
 
 
 def damaged(trees: Trees, fault: Exception) -> TreeFileError:

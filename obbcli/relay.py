@@ -123,15 +123,18 @@ class Relay(ABC):
         )
 
     def _clock(self, time: float, *, up: bool) -> float:
-        """Return a leg's time on the whole question's clock, rounded down or up."""
-        start = self._leg.start
-        total = start + time
-        rest = math.fsum((start, time, -total))
-        if up and rest > 0:
-            total = math.nextafter(total, math.inf)
-        elif not up and rest < 0:
-            total = math.nextafter(total, 0.0)
-        return min(total, self._duration)
+        return on_clock(self._leg.start, time, self._duration, up=up)
+
+
+def on_clock(start: float, time: float, duration: float, *, up: bool) -> float:
+    """Return a leg's time on the whole question's clock, rounded down or up, s."""
+    total = start + time
+    rest = math.fsum((start, time, -total))
+    if up and rest > 0:
+        total = math.nextafter(total, math.inf)
+    elif not up and rest < 0:
+        total = math.nextafter(total, 0.0)
+    return min(total, duration)
 
 
 def sum_of(a: Counts, b: Counts) -> Counts:

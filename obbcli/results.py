@@ -92,8 +92,10 @@ class Collision:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FirstContact:
-    """When and where two moving bodies first touch. Fields that do not apply are None.
+class Contact:
+    """When and where two moving bodies, or two triangles of theirs, first touch.
+
+    Fields that do not apply are None.
 
     Attributes:
         status: how the question ended. `Status.SEPARATED` is a proof for the whole closed interval.
@@ -115,7 +117,6 @@ class FirstContact:
         approximate: whether boxes stood for triangles, so that contact is not proven.
         error_bound: mesh units; how far apart the surfaces can be although contact is said. 0 where
             exact.
-        stats: what the question cost.
     """
 
     status: Status
@@ -135,7 +136,6 @@ class FirstContact:
     contained: bool | None = None
     approximate: bool = False
     error_bound: float = 0.0
-    stats: QueryStats
 
     @property
     def collides(self) -> bool:
@@ -145,6 +145,22 @@ class FirstContact:
             UnresolvedError: a limit was reached before the answer was known.
         """
         return _collides(self.status)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FirstContact(Contact):
+    """The first contact of two bodies, and what it cost to know.
+
+    Attributes:
+        stats: what the question cost.
+    """
+
+    stats: QueryStats
+
+    @classmethod
+    def of(cls, contact: Contact, stats: QueryStats) -> FirstContact:
+        """Return a contact with the counters of its question."""
+        return cls(**{**vars(contact), "stats": stats})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,7 +25,7 @@ LAYERS = (
     ("kernels",),
     ("mesh", "rotation", "pose", "motion", "accuracy", "results", "primitives", "treefile"),
     ("tree",),
-    ("question", "relay", "legs", "contact", "nearest", "query"),
+    ("question", "relay", "legs", "touching", "contact", "nearest", "pairs", "query"),
     ("scene", "sweep", "study", "view"),
     ("report",),
     ("cli",),

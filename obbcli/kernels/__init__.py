@@ -7,6 +7,7 @@ Everything with a tight loop lives behind this border. Arrays that cross it were
 from __future__ import annotations
 
 from obbcli.kernels._core import (
+    Contact,
     ContactQuery,
     DistanceQuery,
     Evidence,
@@ -30,6 +31,7 @@ if not keeps_denormals():
     )
 
 __all__ = [
+    "Contact",
     "ContactQuery",
     "DistanceQuery",
     "Evidence",

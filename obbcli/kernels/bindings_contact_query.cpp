@@ -20,26 +20,11 @@ using Triple = std::array<double, 3>;
 obb::Vec3 vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 Triple triple(obb::Vec3 v) { return {v.x, v.y, v.z}; }
 
-// low, high, evidence, triangle of A, triangle of B, distance, error bound
-using Found =
-    std::tuple<double, double, obb::Evidence, std::uint32_t, std::uint32_t, double, double>;
 // point on A, point on B, normal, normal of A, normal of B, dimensions of the features
 using Place = std::tuple<Triple, Triple, Triple, Triple, Triple, int, int>;
 
-std::optional<Found> contact_of(const obb::ContactQuery& query) {
-    const auto& c = query.contact();
-    if (!c) {
-        return std::nullopt;
-    }
-    return Found{c->low,           c->high,     c->evidence,   query.id_a(c->a),
-                 query.id_b(c->b), c->distance, c->error_bound};
-}
-
-Place place_of(obb::ContactQuery& query) {
-    if (!query.contact()) {
-        throw std::invalid_argument("there is no contact");
-    }
-    const obb::ContactPlace p = query.place();
+Place place_of(obb::ContactQuery& query, const obb::Contact& contact) {
+    const obb::ContactPlace p = query.place(contact);
     return {triple(p.point_a),  triple(p.point_b), triple(p.normal), triple(p.normal_a),
             triple(p.normal_b), p.dimension_a,     p.dimension_b};
 }
@@ -61,6 +46,20 @@ void bind_contact_query(nb::module_& m) {
             },
             "linear_velocity"_a, "angular_velocity"_a, "pivot"_a);
 
+    nb::class_<obb::Contact>(m, "Contact")
+        .def_ro("low", &obb::Contact::low)
+        .def_ro("high", &obb::Contact::high)
+        .def_ro("evidence", &obb::Contact::evidence)
+        .def_ro("triangle_a", &obb::Contact::triangle_a)
+        .def_ro("triangle_b", &obb::Contact::triangle_b)
+        // Which pair it is, boxes included.
+        .def_prop_ro("ranges",
+                     [](const obb::Contact& c) {
+                         return std::tuple{c.a.begin, c.a.end, c.b.begin, c.b.end};
+                     })
+        .def_ro("distance", &obb::Contact::distance)
+        .def_ro("error_bound", &obb::Contact::error_bound);
+
     nb::class_<obb::ContactQuery>(m, "ContactQuery")
         .def(
             "__init__",
@@ -68,21 +67,23 @@ void bind_contact_query(nb::module_& m) {
                const obb::Screw& screw_a, const Tree& b, const obb::Pose& pose_b,
                const obb::Screw& screw_b, double duration, double time_tolerance,
                double distance_tolerance, double clearance, bool boxes_for_leaves,
-               std::uint32_t max_depth_a, std::uint32_t max_depth_b, bool any_contact) {
-                new (self)
-                    obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
-                                      {duration, time_tolerance, distance_tolerance, clearance,
-                                       boxes_for_leaves, max_depth_a, max_depth_b, any_contact});
+               std::uint32_t max_depth_a, std::uint32_t max_depth_b, bool any_contact,
+               bool each_pair) {
+                new (self) obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
+                                             {duration, time_tolerance, distance_tolerance,
+                                              clearance, boxes_for_leaves, max_depth_a, max_depth_b,
+                                              any_contact, each_pair});
             },
             "a"_a, "pose_a"_a, "screw_a"_a, "b"_a, "pose_b"_a, "screw_b"_a, nb::kw_only(),
             "duration"_a, "time_tolerance"_a, "distance_tolerance"_a, "clearance"_a,
-            "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "any_contact"_a,
+            "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "any_contact"_a, "each_pair"_a,
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
         .def("advance", &obb::ContactQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
         .def_prop_ro("lower_bound", &obb::ContactQuery::lower_bound)
         .def_prop_ro("has_given_up", &obb::ContactQuery::has_given_up)
-        .def("contact", &contact_of)
+        .def("contact", &obb::ContactQuery::contact)
+        .def("take", &obb::ContactQuery::take)
         .def("place", &place_of)
         .def("counts", [](const obb::ContactQuery& q) {
             const obb::ContactQueryCounts& c = q.counts();

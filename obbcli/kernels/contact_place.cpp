@@ -53,22 +53,23 @@ Vec3 nearest_in(const Obb& box, Vec3 p) {
 } // namespace
 
 // From the query's frame, whose origin is A's pivot, in mesh units.
-Vec3 ContactQuery::in_world(Vec3 point) const {
-    const Vec3 pivot = a_.screw().pivot + contact_->low * a_.screw().linear_velocity;
+Vec3 ContactQuery::in_world(Vec3 point, double low) const {
+    const Vec3 pivot = a_.screw().pivot + low * a_.screw().linear_velocity;
     return pivot + scaled(point, length_exponent_);
 }
 
-ContactPlace ContactQuery::place() {
-    if (contact_->evidence == Evidence::kBoxes) {
-        return place_of_boxes();
+ContactPlace ContactQuery::place(const Contact& contact) {
+    if (contact.evidence == Evidence::kBoxes) {
+        return place_of_boxes(contact);
     }
-    return exact_ ? place_in_translation() : place_of_triangles();
+    return is_translation_ && clearance_ == 0 ? place_in_translation(contact)
+                                              : place_of_triangles(contact);
 }
 
 // The exact question about the pair knows its features as well.
-ContactPlace ContactQuery::place_in_translation() const {
+ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
     const std::optional<PairContact> found =
-        first_contact(a_.posed_triangle(contact_->a), b_.posed_triangle(contact_->b),
+        first_contact(a_.posed_triangle(contact.a), b_.posed_triangle(contact.b),
                       {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration});
     const auto dimension = [](const Feature& f) { return std::min<int>(f.dimension, 2); };
     return {found->point,
@@ -80,11 +81,11 @@ ContactPlace ContactQuery::place_in_translation() const {
             dimension(found->touch.feature_b)};
 }
 
-ContactPlace ContactQuery::place_of_triangles() {
-    const double time = std::ldexp(contact_->low, -time_exponent_);
+ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
+    const double time = std::ldexp(contact.low, -time_exponent_);
     set_time(time);
-    const SpinningTriangle a(a_.triangle(contact_->a), a_.spin());
-    const SpinningTriangle b(b_.triangle(contact_->b), b_.spin());
+    const SpinningTriangle a(a_.triangle(contact.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(contact.b), b_.spin());
     const MovingFrame now = frame(0, time);
     Triangle moved = b.points;
     for (Vec3& p : moved) {
@@ -106,8 +107,8 @@ ContactPlace ContactQuery::place_of_triangles() {
                                  : unit_or(point_b - point_a, unit_or(towards_b, Vec3{1, 0, 0}));
     const Vec3 normal = step.time > 0 ? step.normal : last_resort;
     const double size = a.size + b.size;
-    return {in_world(point_a),
-            in_world(point_b),
+    return {in_world(point_a, contact.low),
+            in_world(point_b, contact.low),
             normal,
             face_normal(a.points, Feature{}, normal),
             face_normal(moved, Feature{}, -normal),
@@ -115,17 +116,17 @@ ContactPlace ContactQuery::place_of_triangles() {
             dimension_along(moved, -normal, size)};
 }
 
-ContactPlace ContactQuery::place_of_boxes() {
-    const double time = std::ldexp(contact_->low, -time_exponent_);
+ContactPlace ContactQuery::place_of_boxes(const Contact& contact) {
+    const double time = std::ldexp(contact.low, -time_exponent_);
     set_time(time);
-    const Obb a = a_.box(contact_->a);
-    Obb b = b_.box(contact_->b);
+    const Obb a = a_.box(contact.a);
+    Obb b = b_.box(contact.b);
     b.center = b.center + frame(0, time).between;
     const Vec3 point_a = nearest_in(a, b.center);
     const Vec3 point_b = nearest_in(b, point_a);
     const Vec3 normal = unit_or(b.center - a.center, Vec3{1, 0, 0});
-    return {in_world(point_a),
-            in_world(point_b),
+    return {in_world(point_a, contact.low),
+            in_world(point_b, contact.low),
             normal,
             smooth_normal(a, point_a, normal),
             smooth_normal(b, point_b, -normal),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 namespace obb {
 
@@ -19,6 +20,13 @@ struct LaterFirst {
     }
 };
 
+struct LaterLow {
+    bool operator()(const Contact& x, const Contact& y) const {
+        return std::tuple(x.low, x.triangle_a, x.triangle_b) >
+               std::tuple(y.low, y.triangle_a, y.triangle_b);
+    }
+};
+
 // Rounding of a projection, times the 1-norms of what is projected: the spin's matrix, its product
 // with the pose (5 u) and with positions (6 u), and sums over up to nine products (12 u).
 constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
@@ -27,6 +35,8 @@ constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
 constexpr std::uint64_t kStallPops = 2000;
 // Boxes this near, of their own size, are said to meet when they cannot be told apart any longer.
 constexpr double kAllButMeeting = 0x1p-20;
+// A pair is opened for as long as its boxes take to move by their own size, times this.
+constexpr double kWindow = 1;
 // Beyond this an angle in twice the digits of a double says nothing any more.
 constexpr double kMostRadians = 0x1p50;
 
@@ -42,7 +52,8 @@ ContactQuery::ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& s
         give_up(0);
         return;
     }
-    push({0, a.root(), b.root()});
+    is_needed_.push_back(false); // a window that nothing leaves: the whole duration
+    push({0, duration_, a.root(), b.root()});
 }
 
 // One power of two brings the largest length of the scene into [1/2, 1), another the duration.
@@ -101,15 +112,23 @@ double ContactQuery::size_of(const MovingTree& body, const NodeRef& ref) {
     return std::ldexp(norm_inf(half_extents_of(body.tree().node(ref))), body.tree().scale_exponent);
 }
 
-// The time up to which a step proves a pair apart, rounded down; nothing where that is beyond the
-// duration. A step proves a half-open interval, so reaching the duration exactly is not enough.
-std::optional<double> ContactQuery::later(double time, double step) const {
-    const double sum = time + step;
+// The time up to which a step proves a pair apart, rounded down; nothing where others see to the
+// rest. A step proves a half-open interval, so reaching the duration exactly is not enough.
+std::optional<double> ContactQuery::later(const Entry& entry, double step) {
+    const double sum = entry.time + step;
     const double below = sum * (1 - 0x1p-52);
     if (below > duration_) {
         return std::nullopt;
     }
-    return std::max(time, below);
+    if (below >= entry.end && entry.end < duration_) {
+        is_needed_[entry.window] = true;
+        return std::nullopt;
+    }
+    return std::max(entry.time, below);
+}
+
+double ContactQuery::next_time() const {
+    return queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.front().time;
 }
 
 void ContactQuery::push(const Entry& entry) {
@@ -124,8 +143,8 @@ void ContactQuery::forget_after(double time) {
 }
 
 bool ContactQuery::advance(std::uint64_t max_pops) {
-    for (; !is_finished_ && max_pops > 0; --max_pops) {
-        if (has_ended()) {
+    for (; max_pops > 0; --max_pops) {
+        if (has_ended() || is_ready()) {
             break;
         }
         std::pop_heap(queue_.begin(), queue_.end(), LaterFirst{});
@@ -134,7 +153,7 @@ bool ContactQuery::advance(std::uint64_t max_pops) {
         ++counts_.pops;
         visit(entry);
     }
-    return is_finished_ || has_ended();
+    return has_ended();
 }
 
 // Whether what is known already answers the question.
@@ -142,29 +161,65 @@ bool ContactQuery::has_ended() {
     if (is_finished_) {
         return true;
     }
-    const double next =
-        queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.front().time;
-    lower_bound_ = std::min({next, stall_ ? stall_->time : next, duration_});
+    const double next = next_time();
+    const double stalled = stalled_.empty() ? next : stalled_.front().time;
+    lower_bound_ = std::min({next, stalled, duration_});
     if (exact_ && (next >= exact_->high || options_.any_contact)) {
         finish(exact_);
     } else if (proof_ && (options_.any_contact || lower_bound_ >= proof_->time - time_tolerance_)) {
         finish(Contact{std::min(lower_bound_, proof_->time), proof_->time, Evidence::kIntersecting,
                        proof_->a, proof_->b, 0, 0});
-    } else if (stall_ && (next > stall_->time + time_tolerance_ ||
-                          counts_.pops > stall_->pops + kStallPops)) {
-        finish_stalled();
+    } else if (!stalled_.empty() &&
+               (next > stalled + time_tolerance_ || counts_.pops > stall_pops_ + kStallPops)) {
+        end_stalled(stalled_);
     } else if (queue_.empty()) {
         finish(std::nullopt);
     }
     return is_finished_;
 }
 
+std::uint64_t ContactQuery::key_of(const NodeRef& a, const NodeRef& b) {
+    return std::uint64_t{a.begin} << 32U | b.begin;
+}
+
+// A contact ends the question, or is one of many.
+void ContactQuery::report(Contact contact) {
+    if (!options_.each_pair) {
+        finish(contact);
+        return;
+    }
+    known_.insert(key_of(contact.a, contact.b));
+    contact.triangle_a = a_.id(contact.a);
+    contact.triangle_b = b_.id(contact.b);
+    found_.push_back(contact);
+    std::push_heap(found_.begin(), found_.end(), LaterLow{});
+}
+
+// Others may still come at the same time.
+bool ContactQuery::is_ready() const { return !found_.empty() && found_.front().low < next_time(); }
+
+std::optional<Contact> ContactQuery::take() {
+    if (!is_ready()) {
+        return std::nullopt;
+    }
+    std::pop_heap(found_.begin(), found_.end(), LaterLow{});
+    const Contact contact = found_.back();
+    found_.pop_back();
+    return in_seconds(contact);
+}
+
+Contact ContactQuery::in_seconds(Contact contact) const {
+    contact.low = std::ldexp(contact.low, time_exponent_);
+    contact.high = std::ldexp(contact.high, time_exponent_);
+    return contact;
+}
+
 void ContactQuery::finish(std::optional<Contact> contact) {
-    contact_ = contact;
     lower_bound_ = contact ? contact->low : duration_;
-    if (contact_) {
-        contact_->low = std::ldexp(contact_->low, time_exponent_);
-        contact_->high = std::ldexp(contact_->high, time_exponent_);
+    if (contact) {
+        contact_ = in_seconds(*contact);
+        contact_->triangle_a = a_.id(contact->a);
+        contact_->triangle_b = b_.id(contact->b);
     }
     is_finished_ = true;
     queue_.clear();
@@ -181,6 +236,9 @@ void ContactQuery::visit(const Entry& entry) {
     const bool open_a = is_open(a_.tree(), entry.a, options_.max_depth_a);
     const bool open_b = is_open(b_.tree(), entry.b, options_.max_depth_b);
     if (!open_a && !open_b) {
+        if (options_.each_pair && known_.contains(key_of(entry.a, entry.b))) {
+            return;
+        }
         if (!entry.a.is_triangle() || !entry.b.is_triangle()) {
             meet_boxes(entry);
         } else if (is_translation_ && clearance_ == 0) {
@@ -188,6 +246,8 @@ void ContactQuery::visit(const Entry& entry) {
         } else {
             meet_triangles(entry);
         }
+    } else if (entry.reopened > 0 && is_over(entry)) {
+        return;
     } else if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
         open<true>(entry);
     } else {
@@ -197,18 +257,78 @@ void ContactQuery::visit(const Entry& entry) {
 
 template <bool kOpensA>
 void ContactQuery::advance_child(const Entry& entry, const NodeRef& child, double step) {
-    if (const std::optional<double> time = later(entry.time, step)) {
-        push(kOpensA ? Entry{*time, child, entry.b} : Entry{*time, entry.a, child});
+    if (const std::optional<double> time = later(entry, step)) {
+        push(kOpensA ? Entry{*time, entry.end, child, entry.b, entry.window}
+                     : Entry{*time, entry.end, entry.a, child, entry.window});
     }
+}
+
+// How long it takes two boxes to move by their own sizes against each other, about.
+double ContactQuery::window(const Obb& a, const Obb& b) const {
+    const Vec3 wa = a_.spin().velocity(), wb = b_.spin().velocity();
+    const Vec3 velocity = closing_velocity_ + cross(wb, b.center) - cross(wa, a.center);
+    const double size_a = norm_1(a.half_extents), size_b = norm_1(b.half_extents);
+    const double turning = size_a * a_.spin().speed() + size_b * b_.spin().speed();
+    return kWindow * (size_a + size_b) / (norm_1(velocity) + turning);
+}
+
+// Bodies that slide along each other would keep every pair open that was ever near. So a pair is
+// opened for a while, and longer each time that it has not parted since; then it is looked at as a
+// whole again, unless all its parts were proven apart for good.
+void ContactQuery::close_after(Entry& entry, double wide) {
+    const double stop = entry.time + std::ldexp(wide, static_cast<int>(entry.reopened));
+    if (!(stop + 2 * (stop - entry.time) < entry.end)) {
+        return;
+    }
+    if (free_windows_.empty()) {
+        free_windows_.push_back(static_cast<std::uint32_t>(is_needed_.size()));
+        is_needed_.push_back(false);
+    }
+    Entry again = entry;
+    again.time = stop;
+    again.reopened += 1;
+    again.opened = free_windows_.back();
+    push(again);
+    free_windows_.pop_back();
+    entry.window = again.opened;
+    entry.end = stop;
+}
+
+// Whether a pair that was opened before needs not be opened again now.
+bool ContactQuery::is_over(const Entry& entry) {
+    const bool is_needed = is_needed_[entry.opened];
+    is_needed_[entry.opened] = false;
+    free_windows_.push_back(entry.opened);
+    if (!is_needed) {
+        return true;
+    }
+    set_time(entry.time);
+    ++counts_.box_tests;
+    const Obb a = a_.box(entry.a), b = b_.box(entry.b);
+    const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
+    const std::optional<double> time = later(entry, time_apart(a, b, now));
+    if (!time) {
+        return true;
+    }
+    // Far enough apart to be pushed on as a whole.
+    const bool has_parted = *time - entry.time > 0.5 * window(a, b);
+    if (has_parted) {
+        push({*time, entry.end, entry.a, entry.b, entry.window});
+    }
+    return has_parted;
 }
 
 // Replaces a pair by its children's, each pushed on as far as its own boxes prove it apart.
 template <bool kOpensA>
-void ContactQuery::open(const Entry& entry) {
+void ContactQuery::open(Entry entry) {
     set_time(entry.time);
     MovingTree& body = kOpensA ? a_ : b_;
     const NodeRef& ref = kOpensA ? entry.a : entry.b;
     const Obb other = kOpensA ? b_.box(entry.b) : a_.box(entry.a);
+    if (!is_translation_) {
+        const Obb box = body.box(ref);
+        close_after(entry, kOpensA ? window(box, other) : window(other, box));
+    }
     const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
     const auto step_of = [&](const NodeRef& child) {
         ++counts_.box_tests;
@@ -246,12 +366,12 @@ void ContactQuery::meet_boxes(const Entry& entry) {
     ++counts_.box_tests;
     const Obb a = a_.box(entry.a), b = b_.box(entry.b);
     const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
-    const std::optional<double> time = later(entry.time, time_apart(a, b, now));
+    const std::optional<double> time = later(entry, time_apart(a, b, now));
     if (!time) {
         return;
     }
     if (*time > entry.time) {
-        push({*time, entry.a, entry.b});
+        push({*time, entry.end, entry.a, entry.b, entry.window});
         return;
     }
     // A step too short for a double to tell: the boxes all but meet, or turn too fast.
@@ -265,8 +385,7 @@ void ContactQuery::meet_boxes(const Entry& entry) {
     // Boxes that no face axis separates may be apart still, by no more than their diagonals.
     const double bound =
         std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * closer.absolute, length_exponent_);
-    Contact contact{entry.time, entry.time, Evidence::kBoxes, entry.a, entry.b, 0, bound};
-    finish(contact);
+    report({entry.time, entry.time, Evidence::kBoxes, entry.a, entry.b, 0, bound});
 }
 
 double ContactQuery::lower_bound() const { return std::ldexp(lower_bound_, time_exponent_); }

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
+#include <unordered_set>
 #include <vector>
 
 namespace obb {
@@ -26,6 +28,8 @@ struct ContactQueryOptions {
     std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
     // Any proof of contact will do; how early it is does not matter.
     bool any_contact = false;
+    // Not the bodies' first contact alone: that of every pair of triangles, one after the other.
+    bool each_pair = false;
 };
 
 enum class Evidence : std::uint8_t { kNone, kIntersecting, kWithinTolerance, kBoxes };
@@ -46,6 +50,7 @@ struct Contact {
     NodeRef a{}, b{};
     double distance = 0;    // proven bound on the distance at `high`, mesh units; 0 if intersecting
     double error_bound = 0; // of boxes that met: how far apart the surfaces can be, mesh units
+    std::uint32_t triangle_a = 0, triangle_b = 0; // rows of the mesh files
 };
 
 // What is to be said of the place of a contact, world coordinates at its time.
@@ -58,35 +63,37 @@ struct ContactPlace {
 
 class ContactQuery {
   public:
-    // The trees must outlive the query. Asks about times later than 0: the bodies must be known to
-    // be apart at 0. Throws std::domain_error where positions would leave the range of double.
+    // The trees must outlive the query. But for `each_pair` it asks about times later than 0: the
+    // bodies must be known to be apart at 0. Throws std::domain_error where positions would leave
+    // the range of double.
     ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& screw_a, const TreeView& b,
                  const Pose& pose_b, const Screw& screw_b, const ContactQueryOptions& options);
 
-    // Takes at most so many pairs from the queue; true when the answer is complete.
+    // Takes at most so many pairs from the queue; true when the answer is complete. With
+    // `each_pair` it also ends, and returns false, when a contact is ready to be taken.
     bool advance(std::uint64_t max_pops);
+
+    // With `each_pair`: the next contact in order of `low`, once no other can come before it.
+    [[nodiscard]] std::optional<Contact> take();
 
     // No contact in [0, lower_bound()): proven at any moment; the duration when proven apart.
     [[nodiscard]] double lower_bound() const;
     // The motion is too fast to be followed in doubles: nothing is known beyond lower_bound().
     [[nodiscard]] bool has_given_up() const { return has_given_up_; }
     [[nodiscard]] const std::optional<Contact>& contact() const { return contact_; }
-    // Where the contact is, at its `low`; only for a query that found one.
-    [[nodiscard]] ContactPlace place();
-    [[nodiscard]] std::uint32_t id_a(const NodeRef& ref) const { return a_.id(ref); }
-    [[nodiscard]] std::uint32_t id_b(const NodeRef& ref) const { return b_.id(ref); }
+    // Where a contact that this query found is, at its `low`.
+    [[nodiscard]] ContactPlace place(const Contact& contact);
     [[nodiscard]] const ContactQueryCounts& counts() const { return counts_; }
 
   private:
+    // A pair that is proven apart before `time`. From `end` on, unless that is the duration, an
+    // entry for the pair it came from sees to it, if the window they share says that it has to.
     struct Entry {
-        double time;
+        double time, end;
         NodeRef a, b;
-    };
-    // A pair that rounding lets nobody push on.
-    struct Stall {
-        double time;
-        NodeRef a, b;
-        std::uint64_t pops;
+        std::uint32_t window = 0;
+        std::uint32_t opened = 0;   // the window that it was opened for before
+        std::uint32_t reopened = 0; // how often since the two were last seen to have parted
     };
 
     void set_units();
@@ -95,28 +102,38 @@ class ContactQuery {
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
                                std::uint32_t max_depth) const;
     [[nodiscard]] static double size_of(const MovingTree& body, const NodeRef& ref);
-    [[nodiscard]] std::optional<double> later(double time, double step) const;
+    [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
+    [[nodiscard]] double next_time() const;
     void push(const Entry& entry);
     void forget_after(double time);
     void visit(const Entry& entry);
     template <bool kOpensA>
-    void open(const Entry& entry);
+    void open(Entry entry);
+    [[nodiscard]] double window(const Obb& a, const Obb& b) const;
+    void close_after(Entry& entry, double wide);
+    [[nodiscard]] bool is_over(const Entry& entry);
     template <bool kOpensA>
     void advance_child(const Entry& entry, const NodeRef& child, double step);
     void meet_triangles(const Entry& entry);
     void meet_in_translation(const Entry& entry);
     void meet_boxes(const Entry& entry);
+    [[nodiscard]] bool meet_at_start(const Entry& entry);
     [[nodiscard]] bool prove_contact(const Entry& entry);
     [[nodiscard]] bool surely_intersect_at(const Entry& entry, double time);
     [[nodiscard]] double distance_at(const Entry& entry, double time, Vec3& direction);
     [[nodiscard]] bool has_ended();
-    void finish_stalled();
+    [[nodiscard]] static std::uint64_t key_of(const NodeRef& a, const NodeRef& b);
+    [[nodiscard]] bool is_ready() const;
+    void report(Contact contact);
+    [[nodiscard]] std::optional<Contact> contact_of(std::span<const Entry> stalled);
+    void end_stalled(std::span<const Entry> stalled);
     void give_up(double time);
     void finish(std::optional<Contact> contact);
-    [[nodiscard]] ContactPlace place_of_triangles();
-    [[nodiscard]] ContactPlace place_in_translation() const;
-    [[nodiscard]] ContactPlace place_of_boxes();
-    [[nodiscard]] Vec3 in_world(Vec3 point) const;
+    [[nodiscard]] Contact in_seconds(Contact contact) const;
+    [[nodiscard]] ContactPlace place_of_triangles(const Contact& contact);
+    [[nodiscard]] ContactPlace place_in_translation(const Contact& contact) const;
+    [[nodiscard]] ContactPlace place_of_boxes(const Contact& contact);
+    [[nodiscard]] Vec3 in_world(Vec3 point, double low) const;
     [[nodiscard]] double triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const;
 
     MovingTree a_, b_;
@@ -129,9 +146,14 @@ class ContactQuery {
     bool is_translation_ = false;
 
     std::vector<Entry> queue_;
+    std::vector<bool> is_needed_; // of windows: whether not all in it was proven apart for good
+    std::vector<std::uint32_t> free_windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;
-    std::optional<Stall> stall_;
+    std::vector<Entry> stalled_; // pairs that rounding lets nobody push on, earliest first
+    std::uint64_t stall_pops_ = 0;
+    std::vector<Contact> found_;              // of `each_pair`, not taken yet
+    std::unordered_set<std::uint64_t> known_; // the pairs of all contacts found
     std::optional<Contact> contact_;
     double lower_bound_ = 0;
     bool is_finished_ = false;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kStallReach = 0x1p12;
 // Of the bodies' size: what rounding must at least tell apart for a stall to mean a contact.
 constexpr double kSameDistance = 0x1p-16;
+// Of so many stalled pairs each is looked at.
+constexpr std::size_t kMostStalled = 64;
 
 } // namespace
 
@@ -35,13 +37,13 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
     if (exact_ && exact_->high <= high) {
         return;
     }
-    exact_ = Contact{std::ldexp(found->time_below, -time_exponent_),
-                     high,
-                     Evidence::kIntersecting,
-                     entry.a,
-                     entry.b,
-                     0,
-                     0};
+    const double low = std::ldexp(found->time_below, -time_exponent_);
+    const Contact contact{low, high, Evidence::kIntersecting, entry.a, entry.b, 0, 0};
+    if (options_.each_pair) {
+        report(contact);
+        return;
+    }
+    exact_ = contact;
     forget_after(high);
 }
 
@@ -50,6 +52,9 @@ double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTri
 }
 
 void ContactQuery::meet_triangles(const Entry& entry) {
+    if (options_.each_pair && entry.time == 0 && meet_at_start(entry)) {
+        return;
+    }
     set_time(entry.time);
     ++counts_.triangle_tests;
     const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
@@ -65,7 +70,7 @@ void ContactQuery::meet_triangles(const Entry& entry) {
         (void)distance_at(entry, entry.time, direction);
         step = time_apart(a, b, now, direction);
     }
-    const std::optional<double> time = later(entry.time, step.time);
+    const std::optional<double> time = later(entry, step.time);
     if (!time) {
         return;
     }
@@ -74,12 +79,26 @@ void ContactQuery::meet_triangles(const Entry& entry) {
         return;
     }
     if (*time > entry.time) {
-        push({*time, entry.a, entry.b});
+        push({*time, entry.end, entry.a, entry.b, entry.window});
     } else if (step.gap > 4 * triangle_error(a, b) + clearance_) {
         give_up(entry.time);
-    } else if (!stall_ || entry.time < stall_->time) {
-        stall_ = Stall{entry.time, entry.a, entry.b, counts_.pops};
+    } else if (options_.each_pair) {
+        end_stalled({&entry, 1});
+    } else if (stalled_.size() < kMostStalled) {
+        stall_pops_ = stalled_.empty() ? counts_.pops : stall_pops_;
+        stalled_.push_back(entry);
     }
+}
+
+// Whether the pair meets at t = 0, decided exactly.
+bool ContactQuery::meet_at_start(const Entry& entry) {
+    const PairVerdict verdict =
+        test_pair(a_.posed_triangle(entry.a), b_.posed_triangle(entry.b), LinearMotion{});
+    counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
+    if (verdict.intersects) {
+        report({0, 0, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
+    }
+    return verdict.intersects;
 }
 
 // Looks for a proven contact a little later: at shrinking fractions of the tolerance, since a graze
@@ -91,8 +110,8 @@ bool ContactQuery::prove_contact(const Entry& entry) {
         const double enough =
             std::max(std::ldexp(std::max(distance_tolerance_, clearance_), length_exponent_), 0.0);
         if (distance <= enough) {
-            finish(Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b,
-                           distance, 0});
+            report({entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, distance,
+                    0});
             return true;
         }
     }
@@ -101,9 +120,14 @@ bool ContactQuery::prove_contact(const Entry& entry) {
         if (proof_ && proof_->time <= time) {
             continue;
         }
-        if (surely_intersect_at(entry, time)) {
-            proof_ = Entry{time, entry.a, entry.b};
+        if (!surely_intersect_at(entry, time)) {
+            continue;
         }
+        if (options_.each_pair) {
+            report({entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
+            return true;
+        }
+        proof_ = Entry{time, time, entry.a, entry.b};
     }
     return false;
 }
@@ -136,30 +160,40 @@ double ContactQuery::distance_at(const Entry& entry, double time, Vec3& directio
     return std::ldexp(high + 2 * triangle_error(a, b), length_exponent_);
 }
 
-// Rounding hides when exactly a stalled pair touches. It may be seen to intersect a little later;
-// else all that can be said is how near it is.
-void ContactQuery::finish_stalled() {
-    const Entry entry{stall_->time, stall_->a, stall_->b};
+// Rounding hides when exactly stalled pairs touch. One may be seen to intersect a little later;
+// else all that can be said is how near the earliest is, and nothing where rounding is larger than
+// the bodies: a pivot far away, say.
+std::optional<Contact> ContactQuery::contact_of(std::span<const Entry> stalled) {
+    const Entry& first = stalled.front();
     for (double reach = 0x1p-3; reach <= kStallReach; reach *= 2) {
-        const double time = std::min(entry.time + reach * time_tolerance_, duration_);
-        if (Vec3 unused; clearance_ > 0 && distance_at(entry, time, unused) <= options_.clearance) {
-            finish(Contact{entry.time, time, Evidence::kWithinTolerance, entry.a, entry.b,
-                           options_.clearance, 0});
-            return;
-        }
-        if (surely_intersect_at(entry, time)) {
-            finish(Contact{entry.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
-            return;
+        for (const Entry& entry : stalled) {
+            const double time = std::min(entry.time + reach * time_tolerance_, duration_);
+            if (Vec3 unused;
+                clearance_ > 0 && distance_at(entry, time, unused) <= options_.clearance) {
+                return Contact{first.time, time,    Evidence::kWithinTolerance,
+                               entry.a,    entry.b, options_.clearance,
+                               0};
+            }
+            if (surely_intersect_at(entry, time)) {
+                return Contact{first.time, time, Evidence::kIntersecting, entry.a, entry.b, 0, 0};
+            }
         }
     }
     Vec3 direction;
-    const double distance = distance_at(entry, entry.time, direction);
+    const double distance = distance_at(first, first.time, direction);
     if (distance - options_.clearance > kSameDistance * (a_.extent() + b_.extent())) {
-        give_up(entry.time); // a pivot far away, say: rounding is larger than the bodies
-        return;
+        return std::nullopt;
     }
-    finish(
-        Contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, distance, 0});
+    return Contact{first.time, first.time, Evidence::kWithinTolerance, first.a, first.b,
+                   distance,   0};
+}
+
+void ContactQuery::end_stalled(std::span<const Entry> stalled) {
+    if (const std::optional<Contact> contact = contact_of(stalled)) {
+        report(*contact);
+    } else {
+        give_up(stalled.front().time);
+    }
 }
 
 } // namespace obb

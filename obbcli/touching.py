@@ -1,0 +1,103 @@
+"""What is to be said of a contact that the kernels found: where, with which features, how sure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli import kernels, primitives
+from obbcli.results import Contact, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from obbcli.motion import Body
+    from obbcli.question import Trees
+    from obbcli.results import Vector
+
+_EVIDENCE = {
+    kernels.Evidence.INTERSECTING: "intersecting",
+    kernels.Evidence.WITHIN_TOLERANCE: "within_tolerance",
+    kernels.Evidence.BOXES: "boxes",
+}
+_FEATURES = ("vertex", "edge", "face")
+
+
+def contact_of(query: kernels.ContactQuery, found: kernels.Contact, clearance: float) -> Contact:
+    """Return what a moving question found; not for triangles that meet at t = 0."""
+    place = query.place(found)
+    point_a, point_b, normal, normal_a, normal_b = map(_vector, place[:5])
+    by_boxes = found.evidence is kernels.Evidence.BOXES
+    # Whether surfaces themselves touch at t = 0 was decided exactly before.
+    is_at_start = found.high == 0 and (by_boxes or clearance > 0)
+    return Contact(
+        status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
+        time=found.low,
+        time_bounds=(found.low, None if by_boxes else found.high),
+        evidence=_EVIDENCE[found.evidence],
+        point=_vector([0.5 * p + 0.5 * q for p, q in zip(*place[:2], strict=True)]),
+        point_a=point_a,
+        point_b=point_b,
+        normal=normal,
+        normal_a=normal_a,
+        normal_b=normal_b,
+        triangle_a=None if by_boxes else found.triangle_a,
+        triangle_b=None if by_boxes else found.triangle_b,
+        feature="box" if by_boxes else f"{_FEATURES[place[5]]}-{_FEATURES[place[6]]}",
+        distance=None if by_boxes else found.distance,
+        approximate=by_boxes,
+        error_bound=found.error_bound,
+    )
+
+
+def contact_at_start(
+    bodies: tuple[Body, Body], trees: Trees, triangle_a: int, triangle_b: int
+) -> Contact:
+    """Return the contact of two triangles that meet at t = 0."""
+    (a, b), (tree_a, tree_b) = bodies, trees
+    # The exact question about the two triangles knows where they meet, and which features.
+    touch = primitives.first_contact(
+        primitives.Triangle(a.pose.apply(tree_a.vertices[tree_a.mesh.triangles[triangle_a]])),
+        primitives.Triangle(b.pose.apply(tree_b.vertices[tree_b.mesh.triangles[triangle_b]])),
+    )
+    assert isinstance(touch, primitives.PrimitiveContact)
+    point = _vector(touch.point)
+    return Contact(
+        status=Status.OVERLAP_AT_START,
+        time=0.0,
+        time_bounds=(0.0, 0.0),
+        evidence="intersecting",
+        point=point,
+        point_a=point,
+        point_b=point,
+        normal=None if touch.normal is None else _vector(touch.normal),
+        normal_a=None if touch.normal_a is None else _vector(touch.normal_a),
+        normal_b=None if touch.normal_b is None else _vector(touch.normal_b),
+        triangle_a=triangle_a,
+        triangle_b=triangle_b,
+        feature=touch.feature,
+        distance=0.0,
+    )
+
+
+def boxes_at_start(error_bound: float) -> Contact:
+    """Return the contact of boxes that stand for triangles and meet at t = 0."""
+    return Contact(
+        status=Status.OVERLAP_AT_START,
+        time=0.0,
+        time_bounds=(0.0, None),
+        evidence="boxes",
+        feature="box",
+        approximate=True,
+        error_bound=error_bound,
+    )
+
+
+def unresolved(low: float) -> Contact:
+    """Return that nothing is known beyond a proven time, s."""
+    return Contact(status=Status.UNRESOLVED, time=low, time_bounds=(low, None))
+
+
+def _vector(values: Iterable[float]) -> Vector:
+    """Return three floats, without negative zeros."""
+    x, y, z = (float(value) + 0.0 for value in values)
+    return x, y, z

@@ -1,0 +1,103 @@
+"""`obbcli.contacts`: each pair's own first contact, in order of time, against pairs asked alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles_screw import Mover
+from scenes import random_rotation
+from screw_answers import as_body
+from screw_meshes import cube, octahedron
+
+import obbcli
+from obbcli import Accuracy, Body, Contact, Mesh, Motion, Status, UnresolvedError
+
+
+def movers(seed: int, *, turning: bool) -> tuple[Mover, Mover]:
+    """Return two solids that approach each other from a random side."""
+    rng = np.random.default_rng(seed)
+    way = rng.normal(size=3)
+    way *= 4 / np.linalg.norm(way)
+    spins = rng.normal(size=(2, 3)) if turning else np.zeros((2, 3))
+    a = Mover(*cube(), rotation=random_rotation(rng), spin=spins[0])
+    b = Mover(
+        *octahedron(), rotation=random_rotation(rng), translation=way, velocity=-way, spin=spins[1]
+    )
+    return a, b
+
+
+def alone(body: Body, row: int) -> Body:
+    """Return one triangle of a body in the same motion."""
+    mesh: Any = body.shape
+    return Body(Mesh(mesh.vertices[mesh.triangles[row]], [[0, 1, 2]]), body.pose, body.motion)
+
+
+@pytest.mark.parametrize("turning", [False, True], ids=["going", "turning"])
+@pytest.mark.parametrize("seed", range(12))
+def test_every_pair_has_the_contact_it_has_alone(seed: int, turning: bool) -> None:
+    a, b = (as_body(mover) for mover in movers(seed, turning=turning))
+    found = {(c.triangle_a, c.triangle_b): c for c in obbcli.contacts(a, b)}
+    for i in range(len(a.shape.triangles)):
+        for j in range(len(b.shape.triangles)):
+            answer = obbcli.first_contact(alone(a, i), alone(b, j), 1.0)
+            assert ((i, j) in found) == (answer.status is not Status.SEPARATED)
+            if (i, j) in found:
+                low, high = found[i, j].time_bounds
+                assert low <= answer.time_bounds[1]
+                assert answer.time_bounds[0] <= high
+                assert high - low <= 1.0000001e-9
+
+
+@pytest.mark.parametrize("turning", [False, True], ids=["going", "turning"])
+def test_contacts_come_in_order_of_time_and_the_first_is_first_contact(turning: bool) -> None:
+    a, b = (as_body(mover) for mover in movers(1, turning=turning))
+    times = [c.time for c in obbcli.contacts(a, b)]
+    assert times == sorted(times)
+    first = obbcli.first_contact(a, b)
+    assert first.time_bounds[0] <= next(obbcli.contacts(a, b)).time_bounds[1]
+    assert times[0] <= first.time_bounds[1]
+    assert [c.time for c in obbcli.contacts(a, b, limit=3)] == times[:3]
+
+
+def test_pairs_at_start_are_triangle_pairs() -> None:
+    a, b = Mesh(*cube()), Body(Mesh(*cube()), obbcli.Pose(translation=(0.5, 0.25, 0.125)))
+    found = list(obbcli.contacts(a, b))
+    assert [(c.triangle_a, c.triangle_b) for c in found] == [
+        tuple(pair) for pair in obbcli.triangle_pairs(a, b).tolist()
+    ]
+    assert all(c.status is Status.OVERLAP_AT_START and c.time == 0 for c in found)
+
+
+def test_a_limit_names_what_is_known() -> None:
+    a, b = (as_body(mover) for mover in movers(1, turning=True))
+    known: list[Contact] = []
+    with pytest.raises(UnresolvedError, match="all contacts before t = "):
+        known.extend(obbcli.contacts(a, b, accuracy=Accuracy(max_iterations=20)))
+
+
+@pytest.mark.parametrize("limit", [0, -1, 1.5, True, "2"])
+def test_senseless_limits_are_refused_at_once(limit: Any) -> None:
+    with pytest.raises(obbcli.MotionError, match="limit"):
+        obbcli.contacts(Mesh(*cube()), Mesh(*cube()), limit=limit)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_paths_have_the_contacts_of_the_motion_they_follow(seed: int) -> None:
+    a, b = (as_body(mover) for mover in movers(seed, turning=True))
+    times = [0.0, 0.3, 0.55, 1.0]
+    pivot = a.pose.apply(np.mean(a.shape.vertices, axis=0)[None])[0]
+    motion = Motion(a.motion.linear_velocity, a.motion.angular_velocity, pivot)
+    path = Motion.through(times, [motion.pose_at(t, a.pose, pivot) for t in times])
+    along = {
+        (c.triangle_a, c.triangle_b): c.time
+        for c in obbcli.contacts(Body(a.shape, a.pose, path), b)
+    }
+    straight = {
+        (c.triangle_a, c.triangle_b): c.time
+        for c in obbcli.contacts(Body(a.shape, a.pose, motion), b)
+    }
+    assert along.keys() == straight.keys()
+    for pair, time in along.items():
+        assert time == pytest.approx(straight[pair], abs=2e-9)
