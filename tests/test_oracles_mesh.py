@@ -71,7 +71,8 @@ def test_rigid_motion_meets_third_party_times(record: dict[str, Any]) -> None:
     a, b, expected = _body(record["body_a"]), _body(record["body_b"]), record["expected_toi"]
     end = record["t_max"] if expected is None else expected - record["abs_tol"]
 
-    assert not any(
+    # What meets at the start has no time before.
+    assert end < 0 or not any(
         oracles_mesh.mesh_pairs(*_meshes_at(a, b, Fraction(end) * k / 8)) for k in range(9)
     )
     if expected is not None:
