@@ -8,7 +8,9 @@ from typing import Any
 import cases
 import numpy as np
 import pytest
-from oracles import triangles_intersect
+from oracles import root, triangles_intersect
+from oracles_gaps import gap_at, places_at
+from oracles_mesh import mesh_distance_squared
 from oracles_rigid import rigid_points
 from oracles_screw import Mover, Truth, scaled, screw_first_contact
 from oracles_screw_bounds import DOUBLE
@@ -172,3 +174,16 @@ def test_first_contact_scales_with_lengths_and_time(power: int) -> None:
 
     assert small.status == big.status
     assert small.lo is None or float(big.lo or 0) == pytest.approx(float(small.lo) * k, rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_gap_is_the_distance_of_surfaces_that_are_apart(kind: Kind) -> None:
+    for seed in range(4):
+        a, b = random_pair(kind, seed)
+        surfaces = [(places_at(body, 0.0), body.faces) for body in (a, b)]
+        square, _ = mesh_distance_squared(*surfaces[0], *surfaces[1])
+
+        assert gap_at(a, b, 0.0) == pytest.approx(float(root(square)), rel=1e-12)
+        for body in (a, b):
+            off = places_at(body, 0.375) - np.array(body.at(0.375), dtype=np.float64)
+            assert np.abs(off).max() <= 1e-14
