@@ -19,6 +19,7 @@ from obbcli.kernels._core import (
     Tree,
     TreeBuilder,
     TreeError,
+    convex_hull,
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
@@ -43,6 +44,7 @@ __all__ = [
     "Tree",
     "TreeBuilder",
     "TreeError",
+    "convex_hull",
     "primitive_first_contacts",
     "primitive_intersects",
 ]

@@ -11,6 +11,8 @@ class TreeError(RuntimeError):
 
 def keeps_denormals() -> bool: ...
 
+def convex_hull(points: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], max_vertices: int) -> tuple[int, Annotated[NDArray[numpy.uint32], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.uint32], dict(shape=(None, 3), writable=False)]]: ...
+
 class Fit(enum.Enum):
     TRIANGLES = 0
 

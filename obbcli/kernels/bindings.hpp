@@ -57,6 +57,7 @@ struct Tree {
 
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);
+void bind_hull(nb::module_& m);
 void bind_primitives(nb::module_& m);
 void bind_static_query(nb::module_& m);
 void bind_tree(nb::module_& m);
