@@ -29,7 +29,7 @@ help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
 	@echo 'make test      set everything up and run the tests'
 	@echo 'make check     lint, formatting, types, stub, tests'
-	@echo 'make bench     measure against python-fcl and coal (BENCH_ARGS="--quick --json FILE")'
+	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'
@@ -154,9 +154,8 @@ export NEEDS
 	@$(INSTALL) -e '.[check]'
 	@touch $@
 
-# scipy, because the collision manager of trimesh, one of those measured, does not work without it.
 .venv/bench-tools: pyproject.toml | .venv/installed
-	@$(INSTALL) -e '.[bench]' scipy
+	@$(INSTALL) -e '.[bench]'
 	@touch $@
 
 # A second environment that borrows the first one's packages, with kernels of its own.
