@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 OURS = "obbtree"
-PACKAGES = ("obbtree", "numpy", "python-fcl", "coal", "trimesh", "meshio")
+PACKAGES = ("obbtree", "numpy", "python-fcl", "coal", "ipctk", "trimesh", "meshio")
 
 
 @dataclass(frozen=True)
@@ -148,16 +148,21 @@ def _compiler(root: Path) -> dict[str, object]:
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Return rows of one bench as text: medians, spread, ours against the best of the others."""
+    """Return rows of one bench as Markdown: medians, spread, ours against the best other."""
     who = list(dict.fromkeys(name for row in rows for name in row.timings))
     lines = [["case", "triangles", *who, f"best other / {OURS}", "notes"]]
     lines += [_line(row, who) for row in rows]
+    return markdown(lines)
+
+
+def markdown(lines: Sequence[Sequence[str]]) -> str:
+    """Return lines of cells, the first being headings, as a table in Markdown."""
     widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
-    text = [
-        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
-        for line in lines
-    ]
-    return "\n".join([text[0], "-" * len(text[0]), *text[1:]])
+    rule = ["-" * width for width in widths]
+    return "\n".join(
+        "| " + " | ".join(map(str.ljust, line, widths)) + " |"
+        for line in (lines[0], rule, *lines[1:])
+    )
 
 
 def _line(row: Row, who: Sequence[str]) -> list[str]:
@@ -177,11 +182,20 @@ def _short(value: object) -> str:
     return f"{value:,.4g}" if isinstance(value, float) else f"{value}"
 
 
+def time_text(seconds: float) -> str:
+    """Return `12.3 us`."""
+    unit, scale = _unit(seconds)
+    return f"{_three(seconds * scale)} {unit}"
+
+
+def _unit(seconds: float) -> tuple[str, float]:
+    """Return the unit that a time is told in, and how many make a second."""
+    return next((pair for pair in (("s", 1.0), ("ms", 1e3)) if seconds * pair[1] >= 1), ("us", 1e6))
+
+
 def seconds_text(timing: Timing) -> str:
     """Return `12.3 us (12.1 .. 12.9)`."""
-    unit, scale = next(
-        (pair for pair in (("s", 1.0), ("ms", 1e3)) if timing.median * pair[1] >= 1), ("us", 1e6)
-    )
+    unit, scale = _unit(timing.median)
     low, middle, high = (_three(x * scale) for x in (timing.low, timing.median, timing.high))
     return f"{middle} {unit} ({low} .. {high})"
 

@@ -13,6 +13,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import bench_build
+import bench_distance
 import bench_primitives
 import bench_static
 import bench_wall
@@ -20,16 +21,17 @@ from harness import Row, machine, record, table
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHES = {
-    "primitives": bench_primitives.run,
-    "build": bench_build.run,
-    "static": bench_static.run,
-    "wall": bench_wall.run,
+    "primitives": lambda options: bench_primitives.run(options.quick),
+    "build": lambda options: bench_build.run(options.quick),
+    "static": lambda options: bench_static.run(options.quick),
+    "distance": lambda options: bench_distance.run(options.quick),
+    "wall": lambda options: bench_wall.run(options.quick),
 }
 
 
 def main() -> None:
     """Run what is asked for, print tables, write the record."""
-    parser = argparse.ArgumentParser(description="obbtree against python-fcl and coal")
+    parser = argparse.ArgumentParser(description="obbtree against its peers")
     parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer rounds")
     parser.add_argument("--only", choices=BENCHES, action="append", help="one bench (repeatable)")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
@@ -39,9 +41,10 @@ def main() -> None:
         print(f"{key}: {value}")
     rows: list[Row] = []
     for name in options.only or BENCHES:
-        measured = list(BENCHES[name](options.quick))
+        measured = list(BENCHES[name](options))
         for bench in dict.fromkeys(row.bench for row in measured):
-            print(f"\n{bench}\n{table([row for row in measured if row.bench == bench])}")
+            text = table([row for row in measured if row.bench == bench])
+            print(f"\n{bench}\n\n{text}")
         rows += measured
     if options.json:
         options.json.write_text(json.dumps(record(rows, about), indent=1) + "\n")
