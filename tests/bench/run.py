@@ -1,12 +1,15 @@
 """Run the benches: `python tests/bench/run.py [--quick] [--only NAME] [--json FILE]`.
 
 Every answer is asserted; what is printed is the median of rounds in turns, and the quartiles.
+First contact asks `--queries` random questions a class, also of the meshes cow.obj, spot.obj,
+fandisk.obj and rocker-arm.obj where `--meshes` or OBBTREE_BENCH_MESHES names their folder.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -14,19 +17,26 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import bench_build
 import bench_distance
+import bench_first_contact
 import bench_primitives
 import bench_static
 import bench_wall
+import moving_tables
 from harness import Row, machine, record, table
 
 ROOT = Path(__file__).resolve().parents[2]
+MESHES = "OBBTREE_BENCH_MESHES"
 BENCHES = {
     "primitives": lambda options: bench_primitives.run(options.quick),
     "build": lambda options: bench_build.run(options.quick),
     "static": lambda options: bench_static.run(options.quick),
     "distance": lambda options: bench_distance.run(options.quick),
+    "first-contact": lambda options: bench_first_contact.run(
+        options.quick, options.queries, options.meshes
+    ),
     "wall": lambda options: bench_wall.run(options.quick),
 }
+TABLES = {"first contact": moving_tables.tables}
 
 
 def main() -> None:
@@ -35,6 +45,13 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer rounds")
     parser.add_argument("--only", choices=BENCHES, action="append", help="one bench (repeatable)")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
+    parser.add_argument("--queries", type=int, help="random questions a class of first contact")
+    parser.add_argument(
+        "--meshes",
+        type=Path,
+        default=os.environ.get(MESHES),
+        help=f"folder of real meshes for first contact (default: ${MESHES}; else none)",
+    )
     options = parser.parse_args()
     about = machine(ROOT)
     for key, value in about.items():
@@ -43,7 +60,7 @@ def main() -> None:
     for name in options.only or BENCHES:
         measured = list(BENCHES[name](options))
         for bench in dict.fromkeys(row.bench for row in measured):
-            text = table([row for row in measured if row.bench == bench])
+            text = TABLES.get(bench, table)([row for row in measured if row.bench == bench])
             print(f"\n{bench}\n\n{text}")
         rows += measured
     if options.json:
