@@ -23,7 +23,7 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check lint format-check types stub-check stub bench sanitize clean
+.PHONY: help demo test check lint format-check types stub-check stub bench sanitize sanitize-threads clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
@@ -31,6 +31,7 @@ help:
 	@echo 'make check     lint, formatting, types, stub, tests'
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
+	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'
 	@echo 'PYTHON=python3.12 chooses the interpreter, CXX=clang++ the compiler.'
@@ -85,6 +86,19 @@ sanitize: .build/sanitize/installed
 	asan=$$($${CXX:-c++} -print-file-name=libasan.so); cxx=$$($${CXX:-c++} -print-file-name=libstdc++.so.6); \
 	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
+
+# Only what such questions need: the whole library would take minutes to compile.
+THREAD_TEST := tests/threads/growing_trees.cpp
+THREAD_KERNELS := $(addprefix $(KERNELS)/,$(addsuffix .cpp,tree tree_build fit static_query distance_query \
+  query_frame predicates closest_points overlap_point convex_polygon contact_point))
+
+sanitize-threads: .build/growing_trees
+	.build/growing_trees
+
+.build/growing_trees: $(THREAD_TEST) $(SOURCES) | .venv/installed
+	@if [ -s .venv/compiler ]; then echo 'make sanitize-threads needs a compiler with a thread sanitizer' >&2; exit 1; fi
+	@mkdir -p .build
+	$${CXX:-c++} -std=c++20 -O1 -g -ffp-contract=off -fsanitize=thread -pthread -I$(KERNELS) $(THREAD_TEST) $(THREAD_KERNELS) -o $@
 
 clean:
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis

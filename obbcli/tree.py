@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, get_args
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli import __version__, kernels, treefile
+from obbcli import kernels, treefile
 from obbcli.errors import MeshError, TreeFileError
+from obbcli.growth import Growth
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.treefile import Fit, Split
 
 if TYPE_CHECKING:
     import os
@@ -20,18 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_FITS = {
-    "triangles": kernels.Fit.TRIANGLES,
-    "points": kernels.Fit.POINTS,
-    "axis-aligned": kernels.Fit.AXIS_ALIGNED,
-}
-_SPLITS = {"median": kernels.Split.MEDIAN, "center": kernels.Split.CENTER}
+    from obbcli.treefile import Fit, Split
 _NO_LIMIT = 2**32 - 1
-
-# A slice of a build between two looks at signals and progress: tens of milliseconds.
-_TRIANGLES_A_SLICE = 200_000
-# What a build holds at its peak: the moving triangles, keys and boxes; then the arrays of the tree.
-_BUILD_BYTES_A_TRIANGLE = 200
 
 
 class Level(NamedTuple):
@@ -51,14 +41,18 @@ class Level(NamedTuple):
 class ObbTree:
     """A tree of oriented boxes over the triangles of a mesh.
 
-    Made by `build` or `open`. Immutable, and safe to share between threads.
+    Made by `build` or `open`. Safe to share between threads, and the same for every question: that
+    nodes may be made as questions reach them changes no answer.
     """
 
-    def __init__(self, arrays: treefile.TreeArrays, path: Path | None = None) -> None:
-        self._arrays = arrays
+    def __init__(self, made: treefile.TreeArrays | Growth, path: Path | None = None) -> None:
+        self._made = made
         self._path = path
+        self._kernel = made.kernel if isinstance(made, Growth) else self._kernel_of(made)
+
+    def _kernel_of(self, arrays: treefile.TreeArrays) -> kernels.Tree:
         try:
-            self._kernel = kernels.Tree(
+            return kernels.Tree(
                 arrays.vertices,
                 arrays.corners,
                 arrays.triangle_ids,
@@ -76,7 +70,7 @@ class ObbTree:
         split: Split = "median",
         leaf_size: int = 1,
         max_depth: int | None = None,
-        lazy: bool = True,  # noqa: ARG003  # the contract's; the answers do not depend on it
+        lazy: bool = True,
         *,
         max_memory: int | None = None,
         progress: Callable[[float], object] | None = None,
@@ -95,10 +89,11 @@ class ObbTree:
                 or at the box's center, trying the next longest axes and at last the median (§6.2).
             leaf_size: a node of so many triangles is not split.
             max_depth: nodes this deep are not split; the root's depth is 0. None: no limit.
-            lazy: whether nodes may wait until a question needs them. The answers are the same
-                either way, and this version builds all of them at once.
+            lazy: whether nodes wait until a question first reaches them. The tree and the answers
+                are the same either way.
             max_memory: bytes that the build may need at its peak. None: no limit.
-            progress: called now and then with the share done, from 0 to 1.
+            progress: called now and then with the share done, from 0 to 1; only where `lazy` is
+                false.
 
         Raises:
             MeshError: the mesh cannot be read or is refused, an option is none of the above, or the
@@ -106,40 +101,8 @@ class ObbTree:
             OSError: the file cannot be read.
         """
         mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
-        _check_options(fit, split, leaf_size, max_depth)
-        _check_memory(mesh, max_memory)
-        builder = kernels.TreeBuilder(
-            mesh.vertices,
-            mesh.triangles.view(np.uint32),
-            _FITS[fit],
-            _SPLITS[split],
-            min(leaf_size, _NO_LIMIT),
-            _NO_LIMIT if max_depth is None else min(max_depth, _NO_LIMIT),
-        )
-        while not builder.advance(_TRIANGLES_A_SLICE):
-            if progress is not None:
-                progress(builder.progress())
-        nodes, triangle_ids, scale_exponent = builder.finish()
-        corners = mesh.triangles.view(np.uint32)[triangle_ids]
-        corners.setflags(write=False)
-        return cls(
-            treefile.TreeArrays(
-                nodes=nodes,
-                corners=corners,
-                triangle_ids=triangle_ids,
-                vertices=mesh.vertices,
-                scale_exponent=scale_exponent,
-                description=treefile.Description(
-                    fit=fit,
-                    split=split,
-                    leaf_size=int(leaf_size),
-                    max_depth=None if max_depth is None else int(max_depth),
-                    source=None if mesh.source is None else Path(mesh.source).name,
-                    source_sha256=mesh.sha256,
-                    tool_version=__version__,
-                ),
-            )
-        )
+        growth = Growth(mesh, fit, split, leaf_size, max_depth, max_memory)
+        return cls(growth if lazy else growth.arrays(progress))
 
     @classmethod
     def open(cls, path: str | os.PathLike[str], verify: bool = True) -> ObbTree:
@@ -171,6 +134,8 @@ class ObbTree:
     def save(self, path: str | os.PathLike[str]) -> int:
         """Write the tree to a file, whole or not at all, and return the file's size in bytes.
 
+        Nodes that no question has reached yet are made first.
+
         Raises:
             OSError: the place cannot be written to.
         """
@@ -179,7 +144,8 @@ class ObbTree:
     def check(self) -> None:
         """Prove the tree: checksums, structure, and every triangle inside all boxes above it.
 
-        O(n depth). Containment is proven with the rounding of the proof counted against the box.
+        Nodes that no question has reached yet are made first. O(n depth). Containment is proven
+        with the rounding of the proof counted against the box.
 
         Raises:
             TreeFileError: it is not what it claims to be; the message names the first fault.
@@ -188,7 +154,7 @@ class ObbTree:
         if self._path is not None:
             treefile.read_tree(self._path, verify=True)
         depth = self.max_depth
-        fault = self._kernel.check(
+        fault = self._kernel_of(self._arrays).check(
             min(self.leaf_size, _NO_LIMIT), _NO_LIMIT if depth is None else min(depth, _NO_LIMIT)
         )
         if fault is not None:
@@ -199,6 +165,11 @@ class ObbTree:
         return str(self._path or self.source or "tree")
 
     @property
+    def _arrays(self) -> treefile.TreeArrays:
+        """The whole tree."""
+        return self._made.arrays() if isinstance(self._made, Growth) else self._made
+
+    @property
     def kernel(self) -> kernels.Tree:
         """The arrays as the kernels see them."""
         return self._kernel
@@ -206,12 +177,14 @@ class ObbTree:
     @property
     def vertices(self) -> NDArray[np.float64]:
         """Vertices as the mesh has them, float64 (V, 3), read-only."""
-        return self._arrays.vertices
+        return self.mesh.vertices if isinstance(self._made, Growth) else self._made.vertices
 
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh, its triangles in file order; TreeFileError where a damaged tree holds none."""
-        ids = self._arrays.triangle_ids
+        if isinstance(self._made, Growth):
+            return self._made.mesh
+        ids = self._made.triangle_ids
         is_there = np.zeros(self.triangle_count, dtype=bool)
         is_there[ids[ids < self.triangle_count]] = True
         if not is_there.all():
@@ -221,7 +194,7 @@ class ObbTree:
                 "build it again from the mesh",
             )
         triangles = np.empty((self.triangle_count, 3), np.int32)
-        triangles[ids] = self._arrays.corners.view(np.int32)
+        triangles[ids] = self._made.corners.view(np.int32)
         try:
             return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
         except MeshError as fault:
@@ -245,26 +218,32 @@ class ObbTree:
     @property
     def triangle_count(self) -> int:
         """How many triangles the mesh has."""
-        return len(self._arrays.corners)
+        made = self._made
+        return len(made.mesh.triangles) if isinstance(made, Growth) else len(made.corners)
 
     @property
     def vertex_count(self) -> int:
         """How many vertices the mesh has."""
-        return len(self._arrays.vertices)
+        return len(self.vertices)
 
     @property
     def node_count(self) -> int:
-        """How many boxes there are; a single triangle needs none."""
-        return len(self._arrays.nodes)
+        """How many boxes there are by now; a single triangle needs none."""
+        made = self._made
+        return made.node_count if isinstance(made, Growth) else len(made.nodes)
 
     @property
     def possible_node_count(self) -> int:
-        """How many boxes the tree has when it is whole."""
-        return len(self._arrays.nodes)
+        """How many boxes the tree has when it is whole.
+
+        Until it is, with `split="center"` and a limit on leaves or depth, how many it has at most.
+        """
+        made = self._made
+        return made.possible_node_count if isinstance(made, Growth) else len(made.nodes)
 
     @cached_property
     def levels(self) -> tuple[Level, ...]:
-        """What stands at each depth, the root's first."""
+        """What stands at each depth, the root's first; nodes not reached yet are made first."""
         cube = 3 * self._arrays.scale_exponent
         try:
             found = self._kernel.levels()
@@ -277,42 +256,44 @@ class ObbTree:
     @property
     def fit(self) -> str:
         """How boxes were oriented."""
-        return self._arrays.description.fit
+        return self._made.description.fit
 
     @property
     def split(self) -> str:
         """How nodes were parted."""
-        return self._arrays.description.split
+        return self._made.description.split
 
     @property
     def leaf_size(self) -> int:
         """A node of so many triangles is a leaf."""
-        return self._arrays.description.leaf_size
+        return self._made.description.leaf_size
 
     @property
     def max_depth(self) -> int | None:
         """The depth at which a node is a leaf; None: no limit."""
-        return self._arrays.description.max_depth
+        return self._made.description.max_depth
 
     @property
     def source(self) -> str | None:
         """Name of the mesh file, or None for a mesh made in code."""
-        return self._arrays.description.source
+        return self._made.description.source
 
     @property
     def source_sha256(self) -> str | None:
         """SHA-256 of the mesh file's bytes, or None."""
-        return self._arrays.description.source_sha256
+        return self._made.description.source_sha256
 
     @property
     def tool_version(self) -> str:
         """Version of the obbtree that built the tree."""
-        return self._arrays.description.tool_version
+        return self._made.description.tool_version
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the tree's arrays, its triangles and vertices among them."""
-        a = self._arrays
+        """Bytes of the tree as far as it is made, its triangles and vertices among them."""
+        a = self._made
+        if isinstance(a, Growth):
+            return a.nbytes
         return a.nodes.nbytes + a.corners.nbytes + a.triangle_ids.nbytes + a.vertices.nbytes
 
     def __repr__(self) -> str:
@@ -343,30 +324,6 @@ def begins_as_tree(path: Path) -> bool:
             return treefile.is_tree_file(file.read(len(treefile.MAGIC)))
     except OSError:
         return False
-
-
-def _check_options(fit: str, split: str, leaf_size: int, max_depth: int | None) -> None:
-    if not isinstance(fit, str) or fit not in _FITS:
-        raise MeshError("fit", f"is {fit!r}", "use one of " + ", ".join(get_args(Fit)))
-    if not isinstance(split, str) or split not in _SPLITS:
-        raise MeshError("split", f"is {split!r}", "use one of " + ", ".join(get_args(Split)))
-    if isinstance(leaf_size, bool) or not isinstance(leaf_size, (int, np.integer)) or leaf_size < 1:
-        raise MeshError("leaf_size", f"is {leaf_size!r}", "use a whole number of at least 1")
-    if max_depth is not None and (
-        isinstance(max_depth, bool) or not isinstance(max_depth, (int, np.integer)) or max_depth < 0
-    ):
-        raise MeshError("max_depth", f"is {max_depth!r}", "use a whole number of at least 0")
-
-
-def _check_memory(mesh: Mesh, max_memory: int | None) -> None:
-    needed = _BUILD_BYTES_A_TRIANGLE * len(mesh.triangles) + mesh.vertices.nbytes
-    if max_memory is not None and needed > max_memory:
-        raise MeshError(
-            mesh.source or "mesh",
-            f"a build over {len(mesh.triangles)} triangles needs about {needed} bytes, "
-            f"{max_memory} are allowed",
-            "allow more, or split the mesh",
-        )
 
 
 def _ldexp_or_none(value: float, exponent: int) -> float | None:

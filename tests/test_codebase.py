@@ -24,6 +24,7 @@ LAYERS = (
     ("errors", "arrays", "files"),
     ("kernels",),
     ("mesh", "rotation", "pose", "motion", "accuracy", "results", "primitives", "treefile"),
+    ("growth",),
     ("tree",),
     ("question", "relay", "legs", "touching", "contact", "nearest", "pairs", "query"),
     ("scene", "sweep", "study", "view"),

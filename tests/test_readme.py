@@ -31,10 +31,11 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 ANY_LINES = "..."
-# A time, or the number of tests an answer took.
+# A time, or the number of tests that an answer took, or of the boxes made for it.
 VARYING = re.compile(
     r"\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+"
     r"|(?<=triangle tests )[\d,]+( \(\S+ in exact)?"
+    r"|(?:(?<=boxes built )|(?<=of A, ))[\d,]+(?= of)"
 )
 
 

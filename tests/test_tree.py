@@ -74,7 +74,7 @@ def test_tree_of_degenerate_soups_holds_its_triangles(
 
 def test_tree_of_single_leaves_has_one_box_less_than_triangles() -> None:
     for split in SPLITS:
-        tree = ObbTree.build(Mesh(*soup(300)), split=split)
+        tree = ObbTree.build(Mesh(*soup(300)), split=split, lazy=False)
 
         assert tree.node_count == tree.possible_node_count == 299
         assert sum(level.box_count for level in tree.levels) == 299
@@ -232,7 +232,7 @@ def test_build_refuses_more_memory_than_allowed() -> None:
 def test_progress_rises_from_0_to_1() -> None:
     shares: list[float] = []
 
-    ObbTree.build(Mesh(*soup(60_000)), progress=shares.append)
+    ObbTree.build(Mesh(*soup(60_000)), lazy=False, progress=shares.append)
 
     assert shares
     assert shares == sorted(shares)
@@ -246,8 +246,8 @@ def test_interrupt_in_progress_leaves_the_build_and_nothing_else() -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        ObbTree.build(mesh, progress=interrupt)
-    assert ObbTree.build(mesh).node_count == 59_999
+        ObbTree.build(mesh, lazy=False, progress=interrupt)
+    assert ObbTree.build(mesh, lazy=False).node_count == 59_999
 
 
 def test_builds_in_threads_give_the_same_tree(tmp_path: Path) -> None:
@@ -255,13 +255,13 @@ def test_builds_in_threads_give_the_same_tree(tmp_path: Path) -> None:
     alone = saved(ObbTree.build(mesh), tmp_path)
 
     with ThreadPoolExecutor(4) as pool:
-        trees = list(pool.map(lambda _: ObbTree.build(mesh), range(8)))
+        trees = list(pool.map(lambda _: ObbTree.build(mesh, lazy=False), range(8)))
 
     assert all(saved(tree, tmp_path) == alone for tree in trees)
 
 
 def test_other_threads_run_while_levels_are_counted() -> None:
-    tree = ObbTree.build(Mesh(*soup(60_000)))
+    tree = ObbTree.build(Mesh(*soup(60_000)), lazy=False)
     turns = [0]
     is_over = Event()
 
@@ -293,7 +293,7 @@ def test_other_threads_run_while_levels_are_counted() -> None:
 def test_tree_takes_at_most_200_bytes_a_triangle(share: bool, tmp_path: Path) -> None:
     mesh = Mesh(*(bumpy_grid(40) if share else soup(3000)))
     for fit, split in itertools.product(FITS, SPLITS):
-        tree = ObbTree.build(mesh, fit, split)
+        tree = ObbTree.build(mesh, fit, split, lazy=False)
 
         assert tree.nbytes <= 200 * tree.triangle_count
         assert len(saved(tree, tmp_path)) <= 200 * tree.triangle_count

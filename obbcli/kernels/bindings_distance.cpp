@@ -16,6 +16,7 @@ void bind_distance(nb::module_& m) {
             [](obb::DistanceQuery* self, const Tree& a, const obb::Pose& pose_a, const Tree& b,
                const obb::Pose& pose_b, bool boxes_for_leaves, std::uint32_t max_depth_a,
                std::uint32_t max_depth_b, double tolerance) {
+                nb::gil_scoped_release release; // goes down to a pair of triangles
                 new (self)
                     obb::DistanceQuery(a.view, pose_a, b.view, pose_b,
                                        {boxes_for_leaves, max_depth_a, max_depth_b, tolerance});

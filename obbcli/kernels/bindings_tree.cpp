@@ -32,19 +32,51 @@ void init_tree(Tree* self, Rows<double, 3> vertices, Rows<std::uint32_t, 3> corn
     new (self) Tree{vertices, corners, triangle_ids, nodes, view};
 }
 
-using Built = std::tuple<Owned<std::uint8_t, -1, 64>, Owned<std::uint32_t, -1>, int>;
+// A builder with the arrays of the mesh that it reads.
+struct TreeBuilder {
+    Rows<double, 3> vertices;
+    Rows<std::uint32_t, 3> corners;
+    obb::TreeBuilder builder;
+};
 
-Built finish_build(obb::TreeBuilder& builder) {
-    std::vector<obb::Node> nodes;
-    std::vector<std::uint32_t> ids;
-    {
-        nb::gil_scoped_release release;
-        nodes = builder.take_nodes();
-        ids = builder.triangle_ids();
-    }
-    const std::size_t node_count = nodes.size(), id_count = ids.size();
-    return {owned<Owned<std::uint8_t, -1, 64>>(std::move(nodes), {node_count, 64}),
-            owned<Owned<std::uint32_t, -1>>(std::move(ids), {id_count}), builder.scale_exponent()};
+void init_builder(TreeBuilder* self, const Rows<double, 3>& vertices,
+                  const Rows<std::uint32_t, 3>& corners, obb::Fit fit, obb::Split split,
+                  std::uint32_t leaf_size, std::uint32_t max_depth) {
+    const auto v = records<obb::Vec3>(vertices);
+    const auto c = records<obb::Corners>(corners);
+    const obb::BuildOptions options{fit, split, leaf_size, max_depth};
+    nb::gil_scoped_release release;
+    new (self) TreeBuilder{vertices, corners, obb::TreeBuilder(v, c, options)};
+}
+
+// What the builder owns it keeps, for questions to read: arrays are views of it, and keep it alive.
+template <typename Array, typename Record>
+Array seen(std::span<const Record> records, std::initializer_list<std::size_t> shape,
+           nb::handle owner) {
+    return Array(records.data(), shape, owner);
+}
+
+using Arrays =
+    std::tuple<Owned<std::uint8_t, -1, 64>, Owned<std::uint32_t, -1, 3>, Owned<std::uint32_t, -1>>;
+
+Arrays arrays_of(nb::handle_t<TreeBuilder> self) {
+    const obb::TreeBuilder& builder = nb::cast<const TreeBuilder&>(self).builder;
+    const auto nodes = [&] {
+        using Nodes = Owned<std::uint8_t, -1, 64>;
+        if (!builder.has_gaps()) {
+            return seen<Nodes>(builder.nodes(), {builder.nodes().size(), 64}, self);
+        }
+        std::vector<obb::Node> together;
+        {
+            nb::gil_scoped_release release;
+            together = builder.without_gaps();
+        }
+        const std::size_t count = together.size();
+        return owned<Nodes>(std::move(together), {count, 64});
+    };
+    const std::size_t count = builder.corners().size();
+    return {nodes(), seen<Owned<std::uint32_t, -1, 3>>(builder.corners(), {count, 3}, self),
+            seen<Owned<std::uint32_t, -1>>(builder.triangle_ids(), {count}, self)};
 }
 
 std::vector<std::tuple<std::uint64_t, std::uint64_t, double>> levels_of(const Tree& tree) {
@@ -79,20 +111,23 @@ void bind_tree(nb::module_& m) {
             "leaf_size"_a, "max_depth"_a)
         .def("levels", &levels_of);
 
-    nb::class_<obb::TreeBuilder>(m, "TreeBuilder")
+    nb::class_<TreeBuilder>(m, "TreeBuilder")
+        .def("__init__", &init_builder, "vertices"_a, "corners"_a, "fit"_a, "split"_a,
+             "leaf_size"_a, "max_depth"_a)
         .def(
-            "__init__",
-            [](obb::TreeBuilder* self, const Rows<double, 3>& vertices,
-               const Rows<std::uint32_t, 3>& corners, obb::Fit fit, obb::Split split,
-               std::uint32_t leaf_size, std::uint32_t max_depth) {
-                const auto v = records<obb::Vec3>(vertices);
-                const auto c = records<obb::Corners>(corners);
-                nb::gil_scoped_release release;
-                new (self) obb::TreeBuilder(v, c, {fit, split, leaf_size, max_depth});
-            },
-            "vertices"_a, "corners"_a, "fit"_a, "split"_a, "leaf_size"_a, "max_depth"_a)
-        .def("advance", &obb::TreeBuilder::advance, "work"_a,
-             nb::call_guard<nb::gil_scoped_release>())
-        .def("progress", &obb::TreeBuilder::progress)
-        .def("finish", &finish_build);
+            "advance",
+            [](TreeBuilder& self, std::uint64_t work) { return self.builder.advance(work); },
+            "work"_a, nb::call_guard<nb::gil_scoped_release>())
+        .def("progress", [](const TreeBuilder& self) { return self.builder.progress(); })
+        .def(
+            "tree",
+            [](const TreeBuilder& self) { return Tree{{}, {}, {}, {}, self.builder.view()}; },
+            nb::keep_alive<0, 1>())
+        .def("arrays", &arrays_of)
+        .def_prop_ro("scale_exponent",
+                     [](const TreeBuilder& self) { return self.builder.scale_exponent(); })
+        .def_prop_ro("node_count",
+                     [](const TreeBuilder& self) { return self.builder.node_count(); })
+        .def_prop_ro("byte_count",
+                     [](const TreeBuilder& self) { return self.builder.byte_count(); });
 }

@@ -189,10 +189,17 @@ void ContactQuery::report(Contact contact) {
         return;
     }
     known_.insert(key_of(contact.a, contact.b));
-    contact.triangle_a = a_.id(contact.a);
-    contact.triangle_b = b_.id(contact.b);
+    name_triangles(contact);
     found_.push_back(contact);
     std::push_heap(found_.begin(), found_.end(), LaterLow{});
+}
+
+// Boxes that meet say nothing of any one triangle.
+void ContactQuery::name_triangles(Contact& contact) const {
+    if (contact.evidence != Evidence::kBoxes) {
+        contact.triangle_a = a_.id(contact.a);
+        contact.triangle_b = b_.id(contact.b);
+    }
 }
 
 // Others may still come at the same time.
@@ -218,8 +225,7 @@ void ContactQuery::finish(std::optional<Contact> contact) {
     lower_bound_ = contact ? contact->low : duration_;
     if (contact) {
         contact_ = in_seconds(*contact);
-        contact_->triangle_a = a_.id(contact->a);
-        contact_->triangle_b = b_.id(contact->b);
+        name_triangles(*contact_);
     }
     is_finished_ = true;
     queue_.clear();
@@ -343,7 +349,7 @@ void ContactQuery::open(Entry entry) {
         }
         return;
     }
-    const auto children = TreeView::children(ref, node);
+    const auto children = body.tree().children(ref, node);
     if (children[0].is_triangle() || children[1].is_triangle()) {
         for (const NodeRef& child : children) {
             advance_child<kOpensA>(entry, child, step_of(child));

@@ -50,7 +50,7 @@ struct Contact {
     NodeRef a{}, b{};
     double distance = 0;    // proven bound on the distance at `high`, mesh units; 0 if intersecting
     double error_bound = 0; // of boxes that met: how far apart the surfaces can be, mesh units
-    std::uint32_t triangle_a = 0, triangle_b = 0; // rows of the mesh files
+    std::uint32_t triangle_a = 0, triangle_b = 0; // rows of the mesh files; 0 where boxes met
 };
 
 // What is to be said of the place of a contact, world coordinates at its time.
@@ -124,6 +124,7 @@ class ContactQuery {
     [[nodiscard]] bool has_ended();
     [[nodiscard]] static std::uint64_t key_of(const NodeRef& a, const NodeRef& b);
     [[nodiscard]] bool is_ready() const;
+    void name_triangles(Contact& contact) const;
     void report(Contact contact);
     [[nodiscard]] std::optional<Contact> contact_of(std::span<const Entry> stalled);
     void end_stalled(std::span<const Entry> stalled);

@@ -95,7 +95,7 @@ void DistanceQuery::descend(Pair pair) {
         if (TreeView::is_leaf(node)) {
             return TreeView::triangle_ref(ref, ref.begin);
         }
-        const auto refs = TreeView::children(ref, node);
+        const auto refs = body.tree().children(ref, node);
         const Side one = reach(body, refs[0]), two = reach(body, refs[1]);
         const double to_one = bound(one, other), to_two = bound(two, other);
         const Vec3 m = middle(other);
@@ -113,6 +113,8 @@ void DistanceQuery::descend(Pair pair) {
             break;
         }
     }
+    a_.tree().prepare_triangles(pair.a, 1);
+    b_.tree().prepare_triangles(pair.b, 1);
     take(measure(a_.triangle(pair.a), b_.triangle(pair.b)), pair.a, pair.b);
 }
 
@@ -186,7 +188,7 @@ void DistanceQuery::open(const Pair& pair) {
         }
         return;
     }
-    const auto refs = TreeView::children(ref, node);
+    const auto refs = body.tree().children(ref, node);
     const auto keys = bounds_of_children<kOpensA>(refs, other);
     const std::size_t last = keys[0] < keys[1] ? 0 : 1; // of a stack, the next
     add_child(refs[1 - last], keys[1 - last]);
@@ -249,6 +251,8 @@ void DistanceQuery::add(const Pair& pair) {
 }
 
 void DistanceQuery::measure_all(const Pair& pair) {
+    a_.tree().prepare_triangles(pair.a, pair.a.triangle_count());
+    b_.tree().prepare_triangles(pair.b, pair.b.triangle_count());
     std::array<Triangle, kBatch> of_b;
     for (std::uint32_t j = pair.b.begin; j < pair.b.end; ++j) {
         of_b[j - pair.b.begin] = b_.triangle(TreeView::triangle_ref(pair.b, j));
@@ -298,6 +302,8 @@ void DistanceQuery::refine(const Pair& pair) {
 // Boxes that stand for what they hold: any of their triangles will do for an upper bound.
 void DistanceQuery::close(const Pair& pair) {
     low_ = std::min(low_, pair.key);
+    a_.tree().prepare_triangles(pair.a, 1);
+    b_.tree().prepare_triangles(pair.b, 1);
     const Triangle a = a_.triangle(pair.a), b = b_.triangle(pair.b);
     ++counts_.triangle_tests;
     if (triangles_intersect(a, b)) {

@@ -167,7 +167,7 @@ void StaticQuery::open() {
     const Side other = kOpensA ? stack_.back().b : stack_.back().a;
     stack_.pop_back();
     std::array<Side, 2> children;
-    const auto apart = reach_children<kOpensA>(TreeView::children(ref, node), other, children);
+    const auto apart = reach_children<kOpensA>(body.tree().children(ref, node), other, children);
     std::size_t last = 1;
     if (!apart[0] && !apart[1]) {
         const Vec3 m = middle(other);

@@ -30,6 +30,22 @@ struct NodeRef {
     [[nodiscard]] bool is_triangle() const { return end - begin == 1; }
 };
 
+// Of a node that has children which are not made yet; no range has its end there.
+inline constexpr std::uint32_t kUnsplit = 0xffffffff;
+
+// Some trees are made as they are used. Whoever goes down from a node asks for what stands right
+// under it: the boxes of its children, or their triangles where they need no box. That is made
+// once, by the first to ask, and only read from then on; others wait for it.
+struct OnDemand {
+    const std::uint8_t* ready; // a flag a slot, set when what stands under the node may be read
+    void* owner;
+    void (*prepare)(void* owner, const NodeRef& ref); // what it throws leaves the tree usable
+
+    [[nodiscard]] bool is_ready(std::uint32_t slot) const {
+        return __atomic_load_n(&ready[slot], __ATOMIC_ACQUIRE) != 0;
+    }
+};
+
 // Boxes stand in depth-first order: the left child's box follows its parent's. A range of n
 // triangles owns n - 1 slots whatever its shape, so a node's slot depends on its range alone and
 // not on the order in which nodes are split. Every step narrows the range, so that links of a
@@ -40,6 +56,7 @@ struct TreeView {
     std::span<const std::uint32_t> triangle_ids; // rows of the mesh file, in tree order
     std::span<const Node> nodes;
     int scale_exponent; // a length in the tree's unit times 2^scale_exponent is in mesh units
+    const OnDemand* on_demand = nullptr; // of a tree that is all there: none
 
     [[nodiscard]] std::uint32_t triangle_count() const {
         return static_cast<std::uint32_t>(corners.size());
@@ -54,9 +71,25 @@ struct TreeView {
         return nodes[ref.slot];
     }
 
-    [[nodiscard]] static bool is_leaf(const Node& node) { return node.split == 0; }
+    // Another thread may be splitting the node, which changes no leaf and makes none.
+    [[nodiscard]] static bool is_leaf(const Node& node) {
+        return __atomic_load_n(&node.split, __ATOMIC_RELAXED) == 0;
+    }
 
-    [[nodiscard]] static std::array<NodeRef, 2> children(const NodeRef& ref, const Node& node) {
+    // Makes what stands right under a node ready to be read.
+    void prepare(const NodeRef& ref) const {
+        if (on_demand != nullptr && !on_demand->is_ready(ref.slot)) {
+            on_demand->prepare(on_demand->owner, ref);
+        }
+    }
+
+    // Makes the first triangles under a node ready to be read, for those who look at them without
+    // having come down to them.
+    void prepare_triangles(const NodeRef& ref, std::uint32_t count) const;
+
+    // Of a node that is no leaf.
+    [[nodiscard]] std::array<NodeRef, 2> children(const NodeRef& ref, const Node& node) const {
+        prepare(ref);
         if (node.split <= ref.begin || node.split >= ref.end) {
             throw TreeError("a split lies outside its range");
         }

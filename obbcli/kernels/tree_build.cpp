@@ -43,7 +43,8 @@ std::array<std::size_t, 3> longest_first(Vec3 half_extents) {
 
 TreeBuilder::TreeBuilder(std::span<const Vec3> vertices, std::span<const Corners> corners,
                          const BuildOptions& options)
-    : options_(options), scale_exponent_(scale_exponent_of(vertices)) {
+    : options_(options), vertices_(vertices), mesh_corners_(corners),
+      scale_exponent_(scale_exponent_of(vertices)), corners_(corners.size()), ids_(corners.size()) {
     const auto count = static_cast<std::uint32_t>(corners.size());
     items_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -52,28 +53,64 @@ TreeBuilder::TreeBuilder(std::span<const Vec3> vertices, std::span<const Corners
         }
         items_[i].id = i;
     }
+    const Range all{0, count};
     if (count < 2) {
+        settle(all);
         return;
     }
     keys_.resize(count);
-    nodes_.resize(count - 1);
-    const Range all{0, count};
+    nodes_ = ZeroedArray<Node>(count - 1);
+    ready_ = ZeroedArray<std::uint8_t>(count - 1);
+    on_demand_ = {ready_.data(), this, [](void* self, const NodeRef& ref) {
+                      static_cast<TreeBuilder*>(self)->prepare(ref);
+                  }};
+    const NodeRef root{0, count, 0, 0};
     const Vec3 reference = items_[0].corners[0];
-    fit_box(all, moments_of(all, reference), reference, nodes_[0]);
-    pending_.push_back({0, count, 0, 0});
+    add_node(root, moments_of(all, reference), reference);
+    pending_.push_back(root);
+    forget_items();
+}
+
+// Of use to nobody any more once every node is split.
+void TreeBuilder::forget_items() {
+    if (unsplit_count_ == 0) {
+        items_ = {};
+        keys_ = {};
+    }
+}
+
+TreeView TreeBuilder::view() const {
+    return {vertices_,     corners_.span(), ids_.span(),
+            nodes_.span(), scale_exponent_, nodes_.size() > 0 ? &on_demand_ : nullptr};
+}
+
+// Whoever loses the race for the lock finds the node ready. The flag is written last: from then on
+// nobody touches the range but to read it, or to split the children's parts of it.
+void TreeBuilder::prepare(const NodeRef& ref) {
+    const std::lock_guard lock(locks_[ref.slot % kLockCount]);
+    if (is_ready(ref.slot)) {
+        return;
+    }
+    split_node(ref);
+    work_done_ += ref.triangle_count();
+    __atomic_store_n(&ready_[ref.slot], std::uint8_t{1}, __ATOMIC_RELEASE);
+    if (--unsplit_count_ == 0) {
+        forget_items();
+    }
 }
 
 bool TreeBuilder::advance(std::uint64_t work) {
     const std::uint64_t stop = work_done_ + work;
     while (!pending_.empty() && work_done_ < stop) {
         const NodeRef ref = pending_.back();
-        pending_.pop_back();
+        pending_.reserve(pending_.size() + 1); // nothing may be lost where memory ends
         if (is_leaf(ref)) {
+            pending_.pop_back();
             continue;
         }
-        split_node(ref);
-        work_done_ += ref.triangle_count();
-        for (const NodeRef& child : TreeView::children(ref, nodes_[ref.slot])) {
+        const auto children = view().children(ref, nodes_[ref.slot]);
+        pending_.pop_back();
+        for (const NodeRef& child : children) {
             if (!child.is_triangle()) {
                 pending_.push_back(child);
             }
@@ -84,9 +121,17 @@ bool TreeBuilder::advance(std::uint64_t work) {
 
 // A balanced tree moves every triangle once a level.
 double TreeBuilder::progress() const {
-    const double levels = std::log2(static_cast<double>(items_.size()) + 1.0);
-    const double total = levels * static_cast<double>(items_.size());
+    const auto count = static_cast<double>(ids_.size());
+    const double total = std::log2(count + 1.0) * count;
     return pending_.empty() ? 1.0 : std::min(0.99, static_cast<double>(work_done_) / total);
+}
+
+std::uint32_t TreeBuilder::node_count() const { return node_count_; }
+
+std::size_t TreeBuilder::byte_count() const {
+    return node_count() * sizeof(Node) + ready_.size() +
+           ids_.size() * (sizeof(Corners) + sizeof(std::uint32_t)) +
+           (unsplit_count_ == 0 ? 0 : ids_.size() * (sizeof(Item) + sizeof(double)));
 }
 
 bool TreeBuilder::is_leaf(const NodeRef& ref) const {
@@ -97,14 +142,38 @@ void TreeBuilder::split_node(const NodeRef& ref) {
     Node& node = nodes_[ref.slot];
     std::array<Moments, 2> moments;
     const std::uint32_t split = partition({ref.begin, ref.end}, node, node.center, moments);
-    node.split = split;
     node.right = ref.slot + (split - ref.begin);
-    const std::array<Range, 2> ranges{{{ref.begin, split}, {split, ref.end}}};
-    const std::array<std::uint32_t, 2> slots{ref.slot + 1, node.right};
+    __atomic_store_n(&node.split, split, __ATOMIC_RELAXED); // is_leaf() may be reading it
+    const std::array<NodeRef, 2> children{{{ref.begin, split, ref.slot + 1, ref.depth + 1},
+                                           {split, ref.end, node.right, ref.depth + 1}}};
     for (std::size_t side = 0; side < 2; ++side) {
-        if (ranges[side].size() > 1) {
-            fit_box(ranges[side], moments[side], node.center, nodes_[slots[side]]);
+        if (children[side].is_triangle()) {
+            settle({children[side].begin, children[side].end});
+        } else {
+            add_node(children[side], moments[side], node.center);
         }
+    }
+}
+
+void TreeBuilder::add_node(const NodeRef& ref, const Moments& moments, Vec3 reference) {
+    const Range range{ref.begin, ref.end};
+    Node& node = nodes_[ref.slot];
+    fit_box(range, moments, reference, node);
+    if (is_leaf(ref)) {
+        settle(range);
+        __atomic_store_n(&ready_[ref.slot], std::uint8_t{1}, __ATOMIC_RELEASE);
+    } else {
+        node.split = kUnsplit;
+        ++unsplit_count_;
+    }
+    ++node_count_;
+}
+
+// Triangles that will not be moved again, for questions to read.
+void TreeBuilder::settle(Range range) {
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        ids_[i] = items_[i].id;
+        corners_[i] = mesh_corners_[items_[i].id];
     }
 }
 
@@ -138,12 +207,13 @@ void TreeBuilder::compute_keys(Range range, Vec3 axis) {
 // Ties are broken by the triangle's id, so that half of the range lies on each side even where all
 // keys are equal, and the same whatever order the triangles arrived in.
 TreeBuilder::Threshold TreeBuilder::median_threshold(Range range) {
-    candidates_.clear();
+    std::vector<std::pair<double, std::uint32_t>> candidates;
+    candidates.reserve(range.size());
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        candidates_.emplace_back(keys_[i], items_[i].id);
+        candidates.emplace_back(keys_[i], items_[i].id);
     }
-    const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(candidates_.size() / 2);
-    std::nth_element(candidates_.begin(), middle, candidates_.end());
+    const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(candidates.size() / 2);
+    std::nth_element(candidates.begin(), middle, candidates.end());
     return {middle->first, middle->second};
 }
 
@@ -230,20 +300,16 @@ void TreeBuilder::fit_box(Range range, const Moments& moments, Vec3 reference, N
     node.split = node.right = node.reserved = 0;
 }
 
-// Leaves of several triangles leave gaps in the slots that their ranges own. Slots follow one
-// another in depth-first order, so moving the boxes together keeps a left child behind its parent.
-std::vector<Node> TreeBuilder::take_nodes() {
-    std::vector<Node> nodes;
-    nodes.swap(nodes_);
-    if (options_.leaf_size == 1 &&
-        options_.max_depth == std::numeric_limits<std::uint32_t>::max()) {
-        return nodes;
-    }
+// Slots follow one another in depth-first order, so moving the boxes together keeps a left child
+// behind its parent.
+std::vector<Node> TreeBuilder::without_gaps() const {
     std::vector<Node> compact;
     std::vector<std::pair<NodeRef, std::uint32_t>> walk; // a node, and the parent whose right it is
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    if (!nodes.empty()) {
-        walk.push_back({{0, static_cast<std::uint32_t>(items_.size()), 0, 0}, kNone});
+    const TreeView tree = view();
+    compact.reserve(node_count());
+    if (nodes_.size() > 0) {
+        walk.push_back({tree.root(), kNone});
     }
     while (!walk.empty()) {
         const auto [ref, parent] = walk.back();
@@ -252,11 +318,11 @@ std::vector<Node> TreeBuilder::take_nodes() {
         if (parent != kNone) {
             compact[parent].right = slot;
         }
-        compact.push_back(nodes[ref.slot]);
-        if (compact.back().split == 0) {
+        compact.push_back(nodes_[ref.slot]);
+        if (TreeView::is_leaf(compact.back())) {
             continue;
         }
-        const auto [left, right] = TreeView::children(ref, nodes[ref.slot]);
+        const auto [left, right] = tree.children(ref, nodes_[ref.slot]);
         if (!right.is_triangle()) {
             walk.push_back({right, slot});
         }
@@ -265,12 +331,6 @@ std::vector<Node> TreeBuilder::take_nodes() {
         }
     }
     return compact;
-}
-
-std::vector<std::uint32_t> TreeBuilder::triangle_ids() const {
-    std::vector<std::uint32_t> ids(items_.size());
-    std::transform(items_.begin(), items_.end(), ids.begin(), [](const Item& i) { return i.id; });
-    return ids;
 }
 
 } // namespace obb

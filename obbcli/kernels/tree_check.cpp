@@ -100,7 +100,7 @@ std::optional<std::string> tree_check(const TreeView& tree, std::uint32_t leaf_s
         if (TreeView::is_leaf(node)) {
             continue;
         }
-        const auto [left, right] = TreeView::children(ref, node);
+        const auto [left, right] = tree.children(ref, node);
         for (const NodeRef& child : {right, left}) {
             if (!child.is_triangle()) {
                 stack.push_back(child);
@@ -137,7 +137,7 @@ std::vector<Level> tree_levels(const TreeView& tree) {
             ++level.leaf_count;
             continue;
         }
-        for (const NodeRef& child : TreeView::children(ref, node)) {
+        for (const NodeRef& child : tree.children(ref, node)) {
             stack.push_back(child);
         }
     }

@@ -26,15 +26,12 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 from obbcli import kernels
 from obbcli.cli import main
 
-class Builder:
-    def __init__(self, *arguments):
-        self.builder = kernels_builder(*arguments)
+def interrupted(self, *arguments):
+    signal.raise_signal(signal.SIGINT)
+    return advance(self, *arguments)
 
-    def advance(self, work):
-        signal.raise_signal(signal.SIGINT)
-        return self.builder.advance(work)
-
-kernels_builder, kernels.TreeBuilder = kernels.TreeBuilder, Builder
+advance = kernels.TreeBuilder.advance
+kernels.TreeBuilder.advance = interrupted
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -1,0 +1,112 @@
+// Questions from several threads to trees that grow as they are asked, for the thread sanitizer:
+// every answer must be that of one thread and whole trees.
+#include "distance_query.hpp"
+#include "static_query.hpp"
+#include "tree_build.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+namespace {
+
+constexpr int kRings = 24;
+constexpr int kSectors = 40;
+constexpr int kRounds = 6;
+constexpr std::size_t kThreads = 4;
+constexpr std::size_t kPoses = 8;
+
+struct Surface {
+    std::vector<obb::Vec3> vertices;
+    std::vector<obb::Corners> corners;
+};
+
+// A torus with bumps.
+Surface bumpy_torus() {
+    Surface s;
+    const double turn = 2 * std::acos(-1.0);
+    for (int i = 0; i < kRings; ++i) {
+        for (int j = 0; j < kSectors; ++j) {
+            const double u = turn * i / kRings, v = turn * j / kSectors;
+            const double r = 0.3 + 0.04 * std::sin(5 * u) * std::cos(7 * v);
+            const double ring = 1 + r * std::cos(u);
+            s.vertices.push_back({ring * std::cos(v), ring * std::sin(v), r * std::sin(u)});
+            const auto at = [](int ring_index, int sector) {
+                return static_cast<std::uint32_t>(ring_index % kRings * kSectors +
+                                                  sector % kSectors);
+            };
+            s.corners.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+            s.corners.push_back({at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)});
+        }
+    }
+    return s;
+}
+
+obb::Pose pose(std::size_t index) {
+    const double x = 0.15 * static_cast<double>(index);
+    return {obb::Mat3::identity(), {1.0 + x, 0.1 * x, 0.4 - 0.3 * x}};
+}
+
+struct Answer {
+    std::vector<obb::TrianglePair> pairs;
+    double low, high;
+    friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
+    obb::StaticQuery all(a, {}, b, pose(index), {.all_pairs = true});
+    while (!all.advance(1000)) {
+    }
+    obb::DistanceQuery nearest(a, {}, b, pose(index), {});
+    while (!nearest.advance(1000)) {
+    }
+    const obb::DistanceBounds bounds = nearest.bounds();
+    return {{all.pairs().begin(), all.pairs().end()}, bounds.low, bounds.high};
+}
+
+int faults(const Surface& s, const obb::BuildOptions& options) {
+    obb::TreeBuilder whole(s.vertices, s.corners, options);
+    while (!whole.advance(1000)) {
+    }
+    std::vector<Answer> wanted;
+    for (std::size_t i = 0; i < kPoses; ++i) {
+        wanted.push_back(ask(whole.view(), whole.view(), i));
+    }
+    int found = 0;
+    for (int round = 0; round < kRounds; ++round) {
+        obb::TreeBuilder tree_a(s.vertices, s.corners, options);
+        obb::TreeBuilder tree_b(s.vertices, s.corners, options);
+        const obb::TreeView a = tree_a.view(), b = tree_b.view();
+        std::vector<Answer> answers(kThreads * kPoses);
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < kThreads; ++t) {
+            threads.emplace_back([&, t] {
+                for (std::size_t i = 0; i < kPoses; ++i) {
+                    const std::size_t index = (i + 3 * t) % kPoses;
+                    answers[t * kPoses + index] = ask(a, b, index);
+                }
+            });
+        }
+        threads.emplace_back([&] {
+            while (!tree_a.advance(500)) {
+            }
+        });
+        for (std::thread& thread : threads) {
+            thread.join();
+        }
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            found += answers[i] == wanted[i % kPoses] ? 0 : 1;
+        }
+    }
+    return found;
+}
+
+} // namespace
+
+int main() {
+    const Surface s = bumpy_torus();
+    const int wrong = faults(s, {}) + faults(s, {.split = obb::Split::kCenter, .leaf_size = 3});
+    std::printf("%d answers differ\n", wrong);
+    return wrong == 0 ? 0 : 1;
+}
