@@ -22,6 +22,7 @@ from obbcli.question import (
     moves_nothing,
     moving_query,
     static_query,
+    stats_of,
     time_tolerance,
     trees_of,
 )
@@ -182,8 +183,9 @@ class Query:
     def _contact(self) -> Contact:
         if self._at_start.is_by_boxes:
             return boxes_at_start(self._at_start.error_bound)
-        if self._at_start.is_contact:
-            return contact_at_start(self._bodies, self._trees, *self._at_start.pairs()[0].tolist())
+        witness = self._at_start.witness()
+        if witness is not None:
+            return contact_at_start(self._bodies, self._trees, *witness)
         if not self._is_finished or (self._moving is not None and self._moving.has_given_up):
             return unresolved(self.lower_bound)
         found = None if self._moving is None else self._moving.contact()
@@ -199,15 +201,7 @@ class Query:
         return sum_of(self._at_start.counts(), moving)
 
     def _stats(self) -> QueryStats:
-        tree_a, tree_b = self._trees
-        return QueryStats(
-            *self._counts(),
-            tree_a.node_count,
-            tree_b.node_count,
-            tree_a.possible_node_count,
-            tree_b.possible_node_count,
-            dict(self._seconds),
-        )
+        return stats_of(self._trees, self._counts(), dict(self._seconds))
 
 
 def first_contact(

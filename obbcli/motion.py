@@ -255,7 +255,7 @@ _AS_LOADED = Pose()
 _AT_REST = Motion()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, init=False, eq=False)
 class Body:
     """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
 
@@ -270,22 +270,22 @@ class Body:
     """
 
     shape: Shape
-    pose: Pose = _AS_LOADED
-    motion: Motion = _AT_REST
+    pose: Pose
+    motion: Motion
 
-    def __post_init__(self) -> None:
+    def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
         # Told by what it has: trees belong to a layer above this one. By its type, since a tree's
         # bounds cost as much as a whole mesh, and may find it damaged.
-        if not isinstance(self.shape, (str, os.PathLike)) and not hasattr(
-            type(self.shape), "bounds"
-        ):
-            _refuse("shape", self.shape, "pass an ObbTree, a Mesh or a path")
-        if not isinstance(self.pose, Pose):
-            _refuse("pose", self.pose, "pass a Pose")
-        if not isinstance(self.motion, Motion):
-            _refuse("motion", self.motion, "pass a Motion")
-        if isinstance(self.motion, PathMotion):
-            object.__setattr__(self, "pose", self.motion.first_pose(self.pose))
+        if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
+            _refuse("shape", shape, "pass an ObbTree, a Mesh or a path")
+        if not isinstance(pose, Pose):
+            _refuse("pose", pose, "pass a Pose")
+        if not isinstance(motion, Motion):
+            _refuse("motion", motion, "pass a Motion")
+        if isinstance(motion, PathMotion):
+            pose = motion.first_pose(pose)
+        # The dataclass is frozen to everybody else, and one update is cheaper than three of them.
+        vars(self).update(shape=shape, pose=pose, motion=motion)
 
 
 def as_body(shape: Body | Shape) -> Body:

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import time
+import math
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.contact import Query
 from obbcli.errors import MotionError
 from obbcli.motion import as_body
 from obbcli.question import (
     NO_LIMIT,
-    POPS_A_SLICE,
-    damaged,
+    box_limits,
     duration_of,
-    static_query,
+    refused,
+    stats_of,
     trees_of,
     whole_limit,
 )
-from obbcli.results import Collision, QueryStats, Status
+from obbcli.results import Collision, Status
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from obbcli.question import Trees
 
 _EXACT = Accuracy()
+# Looking them up in the enumeration takes as long as a test of two boxes.
+_SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
 
 
 def collide(
@@ -66,41 +68,25 @@ def collide(
     bodies = as_body(a), as_body(b)
     if duration_of(duration, bodies) > 0 or accuracy.clearance > 0 or accuracy.method == "sampled":
         return _collide_moving(bodies, duration, accuracy)
-    start = time.perf_counter()
+    start = perf_counter()
     trees = trees_of(bodies)
-    loaded = time.perf_counter()
-    query = static_query(trees, bodies, accuracy)
-    is_complete = _run(query, trees, accuracy)
-    ended = time.perf_counter()
-    status = Status.SEPARATED
-    witness = None
-    if query.is_contact:
-        status = Status.OVERLAP_AT_START
-        if not query.is_by_boxes:
-            first_a, first_b = query.pairs()[0].tolist()
-            witness = first_a, first_b
+    loaded = perf_counter()
+    is_complete, by_boxes, error_bound, witness, counts = _at_rest(trees, bodies, accuracy)
+    seconds = {"load": loaded - start, "query": perf_counter() - loaded}
+    status = _SEPARATED
+    if by_boxes or witness is not None:
+        status = _OVERLAP_AT_START
     elif not is_complete:
         status = Status.UNRESOLVED
-    tree_a, tree_b = trees
-    return Collision(
-        status=status,
-        witness=witness,
-        approximate=query.is_by_boxes,
-        error_bound=query.error_bound,
-        stats=QueryStats(
-            *query.counts(),
-            tree_a.node_count,
-            tree_b.node_count,
-            tree_a.possible_node_count,
-            tree_b.possible_node_count,
-            {"load": loaded - start, "query": ended - loaded},
-        ),
-    )
+    return Collision(status, witness, by_boxes, error_bound, stats_of(trees, counts, seconds))
 
 
 def _collide_moving(
     bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy
 ) -> Collision:
+    # Imported where it is needed: bodies at rest answer without it.
+    from obbcli.contact import Query
+
     query = Query(*bodies, duration, accuracy, any_contact=True)
     found = query.advance(accuracy.max_iterations, accuracy.timeout)
     a, b = found.triangle_a, found.triangle_b
@@ -111,6 +97,26 @@ def _collide_moving(
         error_bound=found.error_bound,
         stats=found.stats,
     )
+
+
+def _at_rest(
+    trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy
+) -> tuple[bool, bool, float, tuple[int, int] | None, tuple[int, int, int, int]]:
+    """Return whether the question was answered, whether boxes met, their gap, witness, counts."""
+    (tree_a, tree_b), (a, b) = trees, bodies
+    timeout = accuracy.timeout
+    try:
+        return kernels.collide(
+            tree_a.kernel,
+            a.pose.kernel,
+            tree_b.kernel,
+            b.pose.kernel,
+            *box_limits(accuracy),
+            accuracy.max_iterations,
+            math.inf if timeout is None else timeout,
+        )
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault
 
 
 def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -> NDArray[np.int64]:
@@ -134,21 +140,10 @@ def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -
     most = NO_LIMIT if limit is None else whole_limit(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
-    query = static_query(trees, bodies, _EXACT, all_pairs=True, limit=most)
-    _run(query, trees, None)
-    return query.pairs()
-
-
-def _run(query: kernels.StaticQuery, trees: Trees, accuracy: Accuracy | None) -> bool:
-    """Advance a query to its end or to a limit of `accuracy`; return whether it ended."""
-    left = NO_LIMIT if accuracy is None else accuracy.max_iterations
-    timeout = None if accuracy is None else accuracy.timeout
-    stop = None if timeout is None else time.monotonic() + timeout
+    (tree_a, tree_b), (body_a, body_b) = trees, bodies
     try:
-        while not query.advance(min(POPS_A_SLICE, left)):
-            left -= POPS_A_SLICE
-            if left <= 0 or (stop is not None and time.monotonic() >= stop):
-                return False
-        return True
-    except kernels.TreeError as fault:
-        raise damaged(trees, fault) from fault
+        return kernels.triangle_pairs(
+            tree_a.kernel, body_a.pose.kernel, tree_b.kernel, body_b.pose.kernel, most
+        )
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault

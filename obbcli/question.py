@@ -11,9 +11,12 @@ from obbcli import kernels
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.mesh import Mesh
 from obbcli.motion import PathMotion
+from obbcli.results import QueryStats
 from obbcli.tree import ObbTree, load_tree
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -65,9 +68,12 @@ def duration_of(duration: float | None, bodies: tuple[Body, Body]) -> float:
         MotionError: not a finite number of at least 0.
     """
     if duration is None:
+        a, b = bodies
+        if a.motion.is_at_rest and b.motion.is_at_rest:
+            return 0.0
         motions = [body.motion for body in bodies if not body.motion.is_at_rest]
         paths = [float(m.times[-1]) for m in motions if isinstance(m, PathMotion)]
-        return max(paths, default=1.0 if motions else 0.0)
+        return max(paths, default=1.0)
     try:
         seconds = float(duration)
     except (TypeError, ValueError) as fault:
@@ -83,9 +89,12 @@ def duration_of(duration: float | None, bodies: tuple[Body, Body]) -> float:
 
 def box_limits(accuracy: Accuracy) -> tuple[bool, int, int]:
     """Return how boxes stand for triangles: in leaves, and from which depth on in either tree."""
-    depths = (accuracy.max_depth_a, accuracy.max_depth_b)
-    depth_a, depth_b = (_NO_DEPTH_LIMIT if d is None else min(d, _NO_DEPTH_LIMIT) for d in depths)
-    return accuracy.leaves == "boxes", depth_a, depth_b
+    a, b = accuracy.max_depth_a, accuracy.max_depth_b
+    return (
+        accuracy.leaves == "boxes",
+        _NO_DEPTH_LIMIT if a is None else min(a, _NO_DEPTH_LIMIT),
+        _NO_DEPTH_LIMIT if b is None else min(b, _NO_DEPTH_LIMIT),
+    )
 
 
 def pivot_of(body: Body, tree: ObbTree) -> NDArray[np.float64]:
@@ -97,12 +106,7 @@ def pivot_of(body: Body, tree: ObbTree) -> NDArray[np.float64]:
 
 
 def static_query(
-    trees: Trees,
-    bodies: tuple[Body, Body],
-    accuracy: Accuracy,
-    *,
-    all_pairs: bool = False,
-    limit: int = NO_LIMIT,
+    trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy
 ) -> kernels.StaticQuery:
     """Return the kernels' query about the bodies at t = 0, not yet advanced.
 
@@ -113,18 +117,38 @@ def static_query(
     (tree_a, tree_b), (a, b) = trees, bodies
     try:
         return kernels.StaticQuery(
-            tree_a.kernel,
-            a.pose.kernel,
-            tree_b.kernel,
-            b.pose.kernel,
-            all_pairs,
-            *box_limits(accuracy),
-            limit,
+            tree_a.kernel, a.pose.kernel, tree_b.kernel, b.pose.kernel, *box_limits(accuracy)
         )
-    except ValueError as fault:
-        raise out_of_range(trees, "pose", fault) from fault
-    except kernels.TreeError as fault:
-        raise damaged(trees, fault) from fault
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault
+
+
+def stats_of(
+    trees: Trees, counts: tuple[int, int, int, int], seconds: Mapping[str, float]
+) -> QueryStats:
+    """Return what a question cost.
+
+    Args:
+        trees: those asked about.
+        counts: box tests, triangle tests, exact ones, pops.
+        seconds: s of wall time by stage.
+    """
+    a, b = trees
+    return QueryStats(
+        *counts,
+        a.node_count,
+        b.node_count,
+        a.possible_node_count,
+        b.possible_node_count,
+        seconds,
+    )
+
+
+def refused(trees: Trees, fault: ValueError | kernels.TreeError) -> ObbError:
+    """Return the error for what the kernels refuse at rest: damage, or poses beyond doubles."""
+    if isinstance(fault, kernels.TreeError):
+        return damaged(trees, fault)
+    return out_of_range(trees, "pose", fault)
 
 
 def out_of_range(trees: Trees, where: str, fault: ValueError) -> ObbError:

@@ -61,8 +61,7 @@ class QueryStats(NamedTuple):
     seconds: Mapping[str, float]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Collision:
+class Collision(NamedTuple):
     """Whether two bodies touch at any time asked about.
 
     Attributes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -244,6 +245,27 @@ def test_timeout_leaves_the_answer_open() -> None:
 
     assert answer.status is Status.UNRESOLVED
     assert obbcli.collide(a, b, accuracy=Accuracy(timeout=1e9)).status is Status.SEPARATED
+
+
+def test_signals_are_heard_while_a_long_question_runs() -> None:
+    heard = []
+
+    def hear(*_: object) -> None:
+        heard.append(True)
+        if len(heard) == 3:
+            raise InterruptedError("enough")
+
+    # Tens of millions of pairs to test: nobody waits for them. Signals that nobody hears meanwhile
+    # are one when the question has ended.
+    crowd = ObbTree.build(Mesh(*needles(6000)))
+    before = signal.signal(signal.SIGALRM, hear)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
+        with pytest.raises(InterruptedError, match="enough"):
+            obbcli.triangle_pairs(crowd, crowd)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_pair_limit_gives_so_many_of_the_pairs_sorted() -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import contextmanager
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from obbcli import __version__
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError
@@ -19,9 +18,8 @@ if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
     from obbcli.cli.question import Question
     from obbcli.contact import Query
-    from obbcli.results import Collision, Distance, FirstContact
-
-    Answer = TypeVar("Answer", Collision, Distance, FirstContact)
+    from obbcli.report.record import Record
+    from obbcli.results import FirstContact
 
 
 def refuse_unanswered(asked: Iterable[tuple[str, Any, str]]) -> None:
@@ -84,12 +82,11 @@ def naming_options(question: Question) -> Iterator[None]:
         raise UsageError(where, fault.fault, fault.remedy) from fault
 
 
-def with_load_time(answer: Answer, files: Iterable[Input]) -> Answer:
-    """Return the answer with the time that the files took: they were read before the question."""
+def with_load_time(record: Record, files: Iterable[Input]) -> Record:
+    """Return the record with the time that the files took: they were read before the question."""
     # One file that stands for both bodies was read once.
-    load = sum({id(file): file.seconds for file in files}.values())
-    seconds = {**answer.stats.seconds, "load": load}
-    return replace(answer, stats=answer.stats._replace(seconds=seconds))
+    record["stats"]["seconds"]["load"] = sum({id(file): file.seconds for file in files}.values())
+    return record
 
 
 def exit_code(status: str, *, asked: bool) -> int:

@@ -128,13 +128,14 @@ def _ask(
     bodies = question.bodies(files)
     answer = _answer(question, bodies, progress=common.shows_progress)
     # Hashes and centroids cost time, and only a document shows them.
-    return collide_record(
+    record = collide_record(
         [file.source(with_sha256=common.json) for file in files],
         motion_part(bodies, question.duration) if common.json else {},
         question.accuracy,
-        with_load_time(answer, files),
+        answer,
         _pairs(bodies, flags["limit"]) if flags["all_pairs"] else None,
     )
+    return with_load_time(record, files)
 
 
 def _answer(question: Question, bodies: tuple[Body, Body], *, progress: bool) -> Collision:

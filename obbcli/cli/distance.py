@@ -99,13 +99,14 @@ def _ask(question: Question, files: tuple[Input, Input], common: CommonOptions) 
     bodies = question.bodies(files)
     answer, is_complete = measure(*bodies, question.accuracy)
     # Hashes and centroids cost time, and only a document shows them.
-    return distance_record(
+    record = distance_record(
         [file.source(with_sha256=common.json) for file in files],
         motion_part(bodies, 0.0) if common.json else {},
         question.accuracy,
-        with_load_time(answer, files),
+        answer,
         is_complete=is_complete,
     )
+    return with_load_time(record, files)
 
 
 def _hide_what_says_nothing() -> None:

@@ -94,9 +94,10 @@ def _ask(question: Question, files: tuple[Input, Input], common: CommonOptions) 
     query = Query(*bodies, question.duration, question.accuracy)
     answer = run(query, question.accuracy, progress=common.shows_progress)
     # Hashes and centroids cost time, and only a document shows them.
-    return first_contact_record(
+    record = first_contact_record(
         [file.source(with_sha256=common.json) for file in files],
         motion_part(bodies, question.duration) if common.json else {},
         question.accuracy,
-        with_load_time(answer, files),
+        answer,
     )
+    return with_load_time(record, files)

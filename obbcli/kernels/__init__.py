@@ -19,10 +19,12 @@ from obbcli.kernels._core import (
     Tree,
     TreeBuilder,
     TreeError,
+    collide,
     convex_hull,
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
+    triangle_pairs,
 )
 
 if not keeps_denormals():
@@ -44,7 +46,9 @@ __all__ = [
     "Tree",
     "TreeBuilder",
     "TreeError",
+    "collide",
     "convex_hull",
     "primitive_first_contacts",
     "primitive_intersects",
+    "triangle_pairs",
 ]

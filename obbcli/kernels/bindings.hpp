@@ -6,6 +6,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <initializer_list>
 #include <span>
@@ -54,6 +56,46 @@ struct Tree {
     Rows<std::uint8_t, 64> nodes;
     obb::TreeView view;
 };
+
+// A tree as the object that Python knows, for those who keep it alive.
+using TreeObject = nb::typed<nb::object, Tree>;
+
+// So much of a query takes less time than to let other threads run meanwhile.
+inline constexpr std::uint64_t kBriefPops = 32;
+// Pops between two looks at clock and signals: a few milliseconds.
+inline constexpr std::uint64_t kPopsASlice = 16'384;
+
+// Takes at most so many pairs from a query's stack or queue; true when its answer is complete.
+template <typename Query>
+inline bool advance(Query& query, std::uint64_t max_pops) {
+    const std::uint64_t brief = std::min(kBriefPops, max_pops);
+    if (query.advance(brief)) {
+        return true;
+    }
+    const nb::gil_scoped_release release;
+    return query.advance(max_pops - brief);
+}
+
+// Advances a query to its end or to a limit, in pops or seconds; true when its answer is complete.
+// Throws what a signal's handler raised.
+template <typename Query>
+inline bool run(Query& query, std::uint64_t max_pops, double seconds) {
+    using Seconds = std::chrono::duration<double>;
+    const auto start = std::chrono::steady_clock::now();
+    for (;;) {
+        const std::uint64_t slice = std::min(kPopsASlice, max_pops);
+        if (advance(query, slice)) {
+            return true;
+        }
+        if (PyErr_CheckSignals() != 0) {
+            throw nb::python_error();
+        }
+        max_pops -= slice;
+        if (max_pops == 0 || Seconds(std::chrono::steady_clock::now() - start).count() >= seconds) {
+            return false;
+        }
+    }
+}
 
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);

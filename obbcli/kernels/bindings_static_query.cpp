@@ -3,9 +3,14 @@
 
 #include "static_query.hpp"
 
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 
+#include <limits>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 using namespace nb::literals;
 
@@ -30,32 +35,85 @@ void init_pose(
     }
 }
 
+// A query, and the trees it looks at: held here, as nanobind's keep_alive takes longer than many a
+// query does.
+struct AtRest {
+    nb::object a, b;
+    obb::StaticQuery query;
+};
+
+void init_query(AtRest* self, const TreeObject& a, const obb::Pose& pose_a, const TreeObject& b,
+                const obb::Pose& pose_b, bool boxes_for_leaves, std::uint32_t max_depth_a,
+                std::uint32_t max_depth_b) {
+    new (self) AtRest{a,
+                      b,
+                      {nb::cast<const Tree&>(a).view,
+                       pose_a,
+                       nb::cast<const Tree&>(b).view,
+                       pose_b,
+                       {false, boxes_for_leaves, max_depth_a, max_depth_b}}};
+}
+
+using Witness = std::optional<std::pair<std::int64_t, std::int64_t>>;
+
+// The first pair found; none where nothing was, or where boxes met.
+Witness witness_of(const obb::StaticQuery& query) {
+    const auto found = query.pairs();
+    return found.empty() ? Witness{} : Witness{{found[0].a, found[0].b}};
+}
+
+// Box tests, triangle tests, exact ones, pops
+using Counts = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
+
+Counts counts_of(const obb::StaticQuery& query) {
+    const obb::StaticQueryCounts& c = query.counts();
+    return {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
+}
+
+// Whether the question was answered, whether boxes met, how far apart these hold what they stand
+// for, witness, counts
+using Collision = std::tuple<bool, bool, double, Witness, Counts>;
+
+Collision collide(const Tree& a, const obb::Pose& pose_a, const Tree& b, const obb::Pose& pose_b,
+                  bool boxes_for_leaves, std::uint32_t max_depth_a, std::uint32_t max_depth_b,
+                  std::uint64_t max_pops, double seconds) {
+    obb::StaticQuery query(a.view, pose_a, b.view, pose_b,
+                           {false, boxes_for_leaves, max_depth_a, max_depth_b});
+    const bool is_complete = run(query, max_pops, seconds);
+    return {is_complete, query.is_by_boxes(), query.error_bound(), witness_of(query),
+            counts_of(query)};
+}
+
+Owned<std::int64_t, -1, 2> triangle_pairs(const Tree& a, const obb::Pose& pose_a, const Tree& b,
+                                          const obb::Pose& pose_b, std::uint64_t limit) {
+    obb::StaticQueryOptions options;
+    options.all_pairs = true;
+    options.limit = limit;
+    obb::StaticQuery query(a.view, pose_a, b.view, pose_b, options);
+    run(query, std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<double>::infinity());
+    return pairs_of(query);
+}
+
 } // namespace
 
 void bind_static_query(nb::module_& m) {
     nb::class_<obb::Pose>(m, "Pose").def("__init__", &init_pose, "rotation"_a, "translation"_a);
-    nb::class_<obb::StaticQuery>(m, "StaticQuery")
+
+    m.def("collide", &collide, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,
+          "max_depth_a"_a, "max_depth_b"_a, "max_pops"_a, "seconds"_a);
+    m.def("triangle_pairs", &triangle_pairs, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "limit"_a);
+
+    nb::class_<AtRest>(m, "StaticQuery")
+        .def("__init__", &init_query, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,
+             "max_depth_a"_a, "max_depth_b"_a)
         .def(
-            "__init__",
-            [](obb::StaticQuery* self, const Tree& a, const obb::Pose& pose_a, const Tree& b,
-               const obb::Pose& pose_b, bool all_pairs, bool boxes_for_leaves,
-               std::uint32_t max_depth_a, std::uint32_t max_depth_b, std::uint64_t limit) {
-                new (self) obb::StaticQuery(
-                    a.view, pose_a, b.view, pose_b,
-                    {all_pairs, boxes_for_leaves, max_depth_a, max_depth_b, limit});
-            },
-            "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "all_pairs"_a, "boxes_for_leaves"_a,
-            "max_depth_a"_a, "max_depth_b"_a, "limit"_a, nb::keep_alive<1, 2>(),
-            nb::keep_alive<1, 4>())
-        .def("advance", &obb::StaticQuery::advance, "max_pops"_a,
-             nb::call_guard<nb::gil_scoped_release>())
-        .def("pairs", &pairs_of)
-        .def_prop_ro("is_contact", &obb::StaticQuery::is_contact)
-        .def_prop_ro("is_by_boxes", &obb::StaticQuery::is_by_boxes)
-        .def_prop_ro("error_bound", &obb::StaticQuery::error_bound)
+            "advance",
+            [](AtRest& self, std::uint64_t max_pops) { return advance(self.query, max_pops); },
+            "max_pops"_a)
+        .def_prop_ro("is_contact", [](const AtRest& self) { return self.query.is_contact(); })
+        .def_prop_ro("is_by_boxes", [](const AtRest& self) { return self.query.is_by_boxes(); })
+        .def_prop_ro("error_bound", [](const AtRest& self) { return self.query.error_bound(); })
+        .def("witness", [](const AtRest& self) { return witness_of(self.query); })
         // One call for all the counters: reading them one by one would cost more than many a query.
-        .def("counts", [](const obb::StaticQuery& q) {
-            const obb::StaticQueryCounts& c = q.counts();
-            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
-        });
+        .def("counts", [](const AtRest& self) { return counts_of(self.query); });
 }
