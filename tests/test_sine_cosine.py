@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 BITS = 200
-COUNT = 1500
+COUNT = 800
 LARGEST = 2.0**50  # rad; the kernels follow no turn beyond
 
 
