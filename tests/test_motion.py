@@ -171,7 +171,16 @@ def test_motion_with_a_pivot_alone_is_at_rest():
 
 @pytest.mark.parametrize("name", ["linear_velocity", "angular_velocity", "pivot"])
 @pytest.mark.parametrize(
-    "value", [(1, 2), (1, 2, math.nan), "fast", (1, 2, math.inf), [[1, 2, 3]], (1, 2, 10**400)]
+    "value",
+    [
+        (1, 2),
+        (1, 2, math.nan),
+        "fast",
+        (1, 2, math.inf),
+        [[1, 2, 3]],
+        (1, 2, 10**400),
+        (1, 2, None),
+    ],
 )
 def test_motion_refuses_what_is_no_vector(name, value):
     with pytest.raises(MotionError, match=f"^{name}"):

@@ -3,10 +3,15 @@
 #include "scale.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace obb {
 
 Spin::Spin(Vec3 velocity) : velocity_(velocity) {
+    if (!std::isfinite(norm_inf(velocity))) { // in a query's units; digits would be NaN, not many
+        speed_ = {std::numeric_limits<double>::infinity(), 0};
+        return;
+    }
     const int exponent = exponent_of(norm_inf(velocity)); // or the squares of slow turns vanish
     const Vec3 w = scaled(velocity, -exponent);
     DoubleDouble square{0, 0};
