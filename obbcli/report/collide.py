@@ -22,7 +22,7 @@ _SENTENCES = {
     "separated": "no contact",
     "overlap_at_start": "in contact at t = 0",
     "contact": "contact within the duration",
-    "unresolved": "a limit was reached before the answer was known",
+    "unresolved": "{} before the answer was known",
 }
 
 
@@ -70,7 +70,7 @@ def collide_tables(record: Record) -> list[Table]:
     rows = [
         *source_rows(record),
         ("status", result["status"]),
-        ("answer", _SENTENCES[result["status"]] + _reservation(result)),
+        ("answer", _SENTENCES[result["status"]].format(why_open(record)) + _reservation(result)),
     ]
     if result["witness"] is not None:
         of_a, of_b = result["witness"]
@@ -97,6 +97,17 @@ def source_rows(record: Record) -> list[tuple[str, str]]:
         (name.upper(), f"{source['path']} ({count(source['triangle_count'])} triangles)")
         for name, source in inputs
     ]
+
+
+def why_open(record: Record) -> str:
+    """Return what an unresolved question may have ended at: a limit, or the end of its digits."""
+    accuracy, stats = record["accuracy"], record["stats"]
+    timeout = accuracy["timeout"]
+    if stats["pops"] >= accuracy["max_iterations"] or (
+        timeout is not None and stats["seconds"]["query"] >= timeout
+    ):
+        return "a limit was reached"
+    return "a limit was reached or the digits of doubles ended"
 
 
 def cost_rows(stats: Record) -> list[tuple[str, str]]:

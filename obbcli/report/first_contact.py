@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.report.collide import cost_rows, source_rows
+from obbcli.report.collide import cost_rows, source_rows, why_open
 from obbcli.report.record import document, stats_part
 from obbcli.report.table import Table, length, point
 
@@ -48,7 +48,7 @@ def first_contact_record(
 def first_contact_tables(record: Record) -> list[Table]:
     """Return the table of a record."""
     result = record["result"]
-    rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(result))]
+    rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
     if result["point"] is not None:
         rows.append(("point", point(result["point"])))
     if result["normal"] is not None:
@@ -70,12 +70,13 @@ def first_contact_bare(record: Record) -> str:
     )
 
 
-def _sentence(result: Record) -> str:
+def _sentence(record: Record) -> str:
+    result = record["result"]
     time = result["time"]
     if result["status"] == "separated":
         return "no contact in the whole duration"
     if result["status"] == "unresolved":
-        return f"a limit was reached; no contact before t = {time!r} s"
+        return f"{why_open(record)}; no contact before t = {time!r} s"
     if not result["approximate"]:
         return "in contact at t = 0" if time == 0 else f"first contact at t = {time!r} s"
     bound = f"the surfaces are at most {length(result['error_bound'])} apart"

@@ -217,6 +217,32 @@ def test_first_contact_refuses_usage_that_means_nothing(here, obbtree, words, fa
     assert fault in ended.err
 
 
+@pytest.mark.parametrize(
+    "words",
+    [("--omega", "1e308", "0", "0"), ("--omega", "0", "0", "1", "--pivot", "1e300", "0", "0")],
+)
+@pytest.mark.parametrize("command", ["first-contact", "collide"])
+def test_end_of_digits_is_no_limit_of_the_users(here, obbtree, command, words):
+    ended = obbtree(command, "cube.stl", "apart.obj", *words)
+
+    assert ended.code == 4
+    assert "a limit was reached or the digits of doubles ended" in ended.out
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-300])
+def test_first_contact_says_how_near_where_less_was_asked(here, obbtree, tolerance):
+    words = ("--vel", 1, 0, 0, "--omega", 0, 0, 0.5, "--translate-b", 1, 0, 0, "--duration", 2,
+             "--time-tolerance", tolerance, "--distance-tolerance", tolerance)  # fmt: skip
+
+    document = obbtree("first-contact", "cube.stl", "apart.obj", *words, "--json").json
+
+    assert document["accuracy"]["distance_tolerance"] == tolerance
+    assert document["result"]["evidence"] == "within_tolerance"
+    assert 1e-16 < document["result"]["distance"] < 1e-12
+    out = obbtree("first-contact", "cube.stl", "apart.obj", *words).out
+    assert "at that time the points are at most" in out
+
+
 def test_first_contact_is_the_same_on_meshes_and_trees(here, obbtree):
     obbtree("build", "cube.stl", "apart.obj")
     words = ("--omega", 0, 0, 1, "--json")
