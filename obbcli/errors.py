@@ -44,4 +44,17 @@ class SceneError(ObbError):
 
 
 class UnresolvedError(ObbError):
-    """A yes or no was asked of an answer that stopped at a limit."""
+    """A limit was reached before all that was asked was known.
+
+    Args:
+        where: as of every error.
+        fault: likewise.
+        remedy: likewise.
+        time: s; all before it is known. None where that is not a matter of time.
+    """
+
+    def __init__(
+        self, where: str, fault: str, remedy: str = "", *, time: float | None = None
+    ) -> None:
+        super().__init__(where, fault, remedy)
+        self.time = time

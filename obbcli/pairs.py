@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import heapq
 import math
-import time
 from dataclasses import fields, replace
-from itertools import islice
+from functools import partial
+from itertools import count, islice, takewhile
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
@@ -20,8 +20,6 @@ from obbcli.legs import legs_of
 from obbcli.mesh import Mesh
 from obbcli.motion import Body, Motion, PathMotion, as_body
 from obbcli.question import (
-    POPS_A_SLICE,
-    damaged,
     duration_of,
     moving_query,
     pivot_of,
@@ -31,11 +29,12 @@ from obbcli.question import (
 )
 from obbcli.relay import on_clock
 from obbcli.results import Contact, Status
+from obbcli.search import Search
 from obbcli.touching import contact_at_start, contact_of
 from obbcli.tree import ObbTree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
     from obbcli.motion import Shape
     from obbcli.question import Trees
@@ -71,154 +70,115 @@ def contacts(
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         UnresolvedError: while iterating: a limit of `accuracy` was reached, or bodies turn too fast
-            to be followed in doubles. All contacts before the time it names were yielded.
+            to be followed in doubles. All contacts before its `time` were yielded.
         OSError: a file cannot be read.
     """
     accuracy = _EXACT if accuracy is None else accuracy
     most = None if limit is None else whole_limit(limit)
+    search = Search(accuracy.max_iterations, accuracy.timeout)
+    return islice(search_contacts((as_body(a), as_body(b)), duration, accuracy, search), most)
+
+
+def search_contacts(
+    bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy, search: Search
+) -> Iterator[Contact]:
+    """Yield what `contacts` yields, as far as a search goes, whose limits stand for `accuracy`'s.
+
+    Raises:
+        MotionError: as `contacts` does; the other errors likewise.
+    """
     if accuracy.method == "sampled":
         raise MotionError(
             "method='sampled'", "knows the first contact alone", "use the certified method"
         )
-    bodies = as_body(a), as_body(b)
     end = duration_of(duration, bodies)
     trees = trees_of(bodies)
-    budget = _Budget(accuracy)
-    if any(isinstance(body.motion, PathMotion) for body in bodies):
-        return islice(_through_legs(bodies, trees, end, accuracy, budget), most)
-    query = moving_query(bodies, trees, end, accuracy, each_pair=True)
-    return islice(_of_motion(query, bodies, trees, accuracy, budget), most)
+    follows = any(isinstance(body.motion, PathMotion) for body in bodies)
+    found = (_of_path if follows else _of_motion)(bodies, trees, end, accuracy, search)
+    return takewhile(lambda contact: _low(contact) <= search.end, found)
 
 
-def first_patch(found: Iterable[Contact]) -> Iterator[Contact]:
-    """Yield those contacts whose bracket overlaps that of the first: a patch where faces land.
-
-    Args:
-        found: in order of time.
-    """
-    end = math.inf
-    for contact in found:
-        assert contact.time_bounds is not None
-        low, high = contact.time_bounds
-        if low > end:
-            return
-        end = min(end, low if high is None else high)
-        yield contact
-
-
-class _Budget:
-    """What is left of the pops and seconds that a caller allows."""
-
-    def __init__(self, accuracy: Accuracy) -> None:
-        self._left = accuracy.max_iterations
-        self._stop = math.inf
-        if accuracy.timeout is not None:
-            self._stop = time.perf_counter() + accuracy.timeout
-
-    def slice(self, proven: float) -> int:
-        """Return how many pops may be done in one go.
-
-        Raises:
-            UnresolvedError: none, or no time; all is known before `proven`, s.
-        """
-        if self._left <= 0 or time.perf_counter() >= self._stop:
-            raise unresolved_after(proven)
-        return min(self._left, POPS_A_SLICE)
-
-    def take(self, pops: int) -> None:
-        """Count pops that were done."""
-        self._left -= pops
-
-
-def unresolved_after(proven: float) -> UnresolvedError:
-    """Return the error of a question that ended before its answer was known."""
-    return UnresolvedError(
-        "contacts",
-        f"stopped at a limit: all contacts before t = {proven!r} s are known, later ones are not",
-        "raise max_iterations or timeout",
-    )
+def _low(contact: Contact) -> float:
+    assert contact.time is not None
+    return contact.time
 
 
 def _of_motion(
-    query: kernels.ContactQuery,
-    bodies: tuple[Body, Body],
-    trees: Trees,
-    accuracy: Accuracy,
-    budget: _Budget,
+    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
 ) -> Iterator[Contact]:
-    """Yield the contacts of bodies of constant velocities."""
-    for found in _taken(query, trees, budget):
-        is_exact = found.evidence is kernels.Evidence.INTERSECTING
-        if found.high == 0 and is_exact:
-            yield contact_at_start(bodies, trees, found.triangle_a, found.triangle_b)
-        else:
-            yield contact_of(query, found, accuracy.clearance)
+    """Return the contacts of bodies of constant velocities."""
+    query = moving_query(bodies, trees, duration, accuracy, each_pair=True)
+
+    def contact(found: kernels.Contact) -> Contact:
+        if found.high == 0 and found.evidence is kernels.Evidence.INTERSECTING:
+            return contact_at_start(bodies, trees, found.triangle_a, found.triangle_b)
+        return contact_of(query, found, accuracy.clearance)
+
+    return map(contact, search.found(query, trees))
 
 
-def _taken(
-    query: kernels.ContactQuery, trees: Trees, budget: _Budget, start: float = 0.0
-) -> Iterator[kernels.Contact]:
-    """Yield what the kernels find, earliest first; `start` is where their clock begins, s."""
-    is_finished = False
-    while True:
-        found = query.take()
-        if found is not None:
-            yield found
-            continue
-        if is_finished:
-            break
-        pops = query.counts()[3]
-        try:
-            is_finished = query.advance(budget.slice(start + query.lower_bound))
-        except kernels.TreeError as fault:
-            raise damaged(trees, fault) from fault
-        budget.take(query.counts()[3] - pops)
-    if query.has_given_up:
-        raise unresolved_after(start + query.lower_bound)
-
-
-def _through_legs(
-    bodies: tuple[Body, Body],
-    trees: Trees,
-    duration: float,
-    accuracy: Accuracy,
-    budget: _Budget,
+def _of_path(
+    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
 ) -> Iterator[Contact]:
-    """Yield the contacts of bodies of which one follows a path, leg by leg.
+    """Yield the contacts of bodies of which one follows a path."""
+    waiting: list[tuple[float, int, int, int, Contact]] = []
+    number = count()
+    try:
+        for low, ask in _near_pairs(bodies, trees, duration, accuracy, search):
+            yield from _taken_before(low, waiting)
+            contact = ask()
+            if contact is not None:
+                a, b = contact.triangle_a, contact.triangle_b
+                order = (-1, -1) if a is None or b is None else (a, b)
+                heapq.heappush(waiting, (_low(contact), *order, next(number), contact))
+    except UnresolvedError as limit:
+        yield from _taken_before(limit.time or 0.0, waiting)
+        raise
+    yield from _taken_before(math.inf, waiting)
+
+
+def _taken_before(
+    time: float, waiting: list[tuple[float, int, int, int, Contact]]
+) -> Iterator[Contact]:
+    while waiting and waiting[0][0] < time:
+        yield heapq.heappop(waiting)[-1]
+
+
+def _near_pairs(
+    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
+) -> Iterator[tuple[float, Callable[[], Contact | None]]]:
+    """Yield each pair that comes near on a leg, from when on, and what says whether it touches.
 
     A leg shows which pairs come near, with its slack to spare; each such pair is then asked about
     alone, over the whole path.
     """
     known = set()
-    waiting: list[tuple[float, int, int, int, Contact]] = []
     for leg in legs_of(bodies, trees, duration):
+        if leg.start > search.end:
+            return
         wide = replace(
             accuracy,
             clearance=accuracy.clearance + leg.slack,
             time_tolerance=time_tolerance(accuracy, duration),
         )
         query = moving_query(leg.bodies, trees, leg.duration, wide, each_pair=True)
-        for found in _taken(query, trees, budget, leg.start):
-            low = on_clock(leg.start, found.low, duration, up=False)
-            while waiting and waiting[0][0] < low:
-                yield heapq.heappop(waiting)[-1]
+        for found in search.found(query, trees, leg.start):
             if found.ranges in known:
                 continue
             known.add(found.ranges)
-            contact: Contact | None
+            low = on_clock(leg.start, found.low, duration, up=False)
             if found.evidence is kernels.Evidence.BOXES:
                 contact = contact_of(query, found, accuracy.clearance)
-                status = Status.CONTACT if low > 0 else contact.status
-                contact = replace(contact, status=status, time=low, time_bounds=(low, None))
+                yield low, partial(_boxes, contact, low)
             else:
                 ids = found.triangle_a, found.triangle_b
-                contact = _alone(bodies, trees, ids, duration, accuracy, low)
-            if contact is not None:
-                assert contact.time is not None
-                order = contact.time, found.triangle_a, found.triangle_b, len(known)
-                heapq.heappush(waiting, (*order, contact))
-    while waiting:
-        yield heapq.heappop(waiting)[-1]
+                yield low, partial(_alone, bodies, trees, ids, duration, accuracy, low, search)
+
+
+def _boxes(contact: Contact, low: float) -> Contact:
+    """Return a leg's contact of boxes on the whole question's clock."""
+    status = Status.CONTACT if low > 0 else contact.status
+    return replace(contact, status=status, time=low, time_bounds=(low, None))
 
 
 def _alone(
@@ -228,6 +188,7 @@ def _alone(
     duration: float,
     accuracy: Accuracy,
     low: float,
+    search: Search,
 ) -> Contact | None:
     """Return the first contact of one pair that is apart before `low`, s; None where it has none.
 
@@ -235,12 +196,10 @@ def _alone(
         UnresolvedError: a limit was reached.
     """
     a, b = (_triangle(*of) for of in zip(bodies, trees, ids, strict=True))
-    found = Query(a, b, duration, accuracy).advance(accuracy.max_iterations, accuracy.timeout)
+    found = search.answer(Query(a, b, duration, accuracy), low)
     if found.status is Status.SEPARATED:
         return None
     assert found.time_bounds is not None
-    if found.status is Status.UNRESOLVED:
-        raise unresolved_after(low)
     # Both lower ends are proven; with the later one the order in time is kept.
     lo = max(low, found.time_bounds[0])
     parts = {field.name: getattr(found, field.name) for field in fields(Contact)}

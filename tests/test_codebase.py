@@ -26,7 +26,7 @@ LAYERS = (
     ("mesh", "rotation", "pose", "motion", "accuracy", "results", "primitives", "treefile"),
     ("growth",),
     ("tree",),
-    ("question", "relay", "legs", "touching", "contact", "nearest", "pairs", "query"),
+    ("question", "relay", "legs", "touching", "contact", "nearest", "search", "pairs", "query"),
     ("scene", "sweep", "study", "view"),
     ("report",),
     ("cli",),

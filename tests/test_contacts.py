@@ -101,3 +101,30 @@ def test_paths_have_the_contacts_of_the_motion_they_follow(seed: int) -> None:
     assert along.keys() == straight.keys()
     for pair, time in along.items():
         assert time == pytest.approx(straight[pair], abs=2e-9)
+
+
+def split(body: Body, pieces: int) -> Body:
+    """Return a body that turns about its own origin as the path through poses on its way."""
+    start = body.pose.translation
+    times = np.linspace(0, 1, pieces + 1)
+    motion = Motion(body.motion.linear_velocity, body.motion.angular_velocity, start)
+    path = Motion.through(times, [motion.pose_at(t, body.pose, start) for t in times])
+    return Body(body.shape, body.pose, path)
+
+
+@pytest.mark.parametrize("follows", [False, True], ids=["constant", "path"])
+def test_nothing_before_the_time_of_a_limit_is_lost(follows: bool) -> None:
+    a, b = (as_body(mover) for mover in movers(2, turning=True))
+    a = split(a, 5) if follows else a
+    every = list(obbcli.contacts(a, b))
+    assert len(every) > 20
+    told = set()
+    for pops in range(15, 1890 if follows else 640, 25):
+        known: list[Contact] = []
+        with pytest.raises(UnresolvedError) as limit:
+            known.extend(obbcli.contacts(a, b, accuracy=Accuracy(max_iterations=pops)))
+        before = [c for c in every if c.time < limit.value.time]
+        assert known[: len(before)] == before
+        assert known == every[: len(known)]
+        told.add(len(known))
+    assert len(told) > 5
