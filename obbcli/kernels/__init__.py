@@ -9,6 +9,7 @@ from __future__ import annotations
 from obbcli.kernels._core import (
     Contact,
     ContactQuery,
+    ContainmentQuery,
     DistanceQuery,
     Evidence,
     Fit,
@@ -21,6 +22,7 @@ from obbcli.kernels._core import (
     TreeError,
     collide,
     convex_hull,
+    first_triangles_of_parts,
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
@@ -36,6 +38,7 @@ if not keeps_denormals():
 __all__ = [
     "Contact",
     "ContactQuery",
+    "ContainmentQuery",
     "DistanceQuery",
     "Evidence",
     "Fit",
@@ -48,6 +51,7 @@ __all__ = [
     "TreeError",
     "collide",
     "convex_hull",
+    "first_triangles_of_parts",
     "primitive_first_contacts",
     "primitive_intersects",
     "triangle_pairs",

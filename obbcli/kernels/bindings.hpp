@@ -97,6 +97,7 @@ inline bool run(Query& query, std::uint64_t max_pops, double seconds) {
     }
 }
 
+void bind_containment(nb::module_& m);
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);
 void bind_hull(nb::module_& m);
