@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.errors import MotionError
-from obbcli.legs import LegQueries
+from obbcli.legs import LegQueries, legs_of
 from obbcli.motion import PathMotion, as_body
 from obbcli.question import (
     POPS_A_SLICE,
@@ -28,6 +28,7 @@ from obbcli.question import (
 )
 from obbcli.relay import sum_of
 from obbcli.results import Contact, FirstContact, QueryStats, Status
+from obbcli.solids import Containment
 from obbcli.touching import boxes_at_start, contact_at_start, contact_of, unresolved
 
 if TYPE_CHECKING:
@@ -54,11 +55,13 @@ class Query:
             else 0.
         accuracy: what is asked of the answer; its `max_iterations` and `timeout` are left to the
             caller of `advance`. None: the defaults.
+        solid: whether a body inside the other at t = 0 is contact too, as `Containment` says.
+        any_contact: whether any proof of contact will do, not of the first.
 
     Raises:
         MotionError: the duration is negative or not finite, a sampled method is asked for (not
             answered by this version), or positions leave the range of double.
-        MeshError: a mesh cannot be read or is refused.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
@@ -70,6 +73,7 @@ class Query:
         duration: float | None = None,
         accuracy: Accuracy | None = None,
         *,
+        solid: bool = False,
         any_contact: bool = False,
     ) -> None:
         self._accuracy = _EXACT if accuracy is None else accuracy
@@ -83,7 +87,11 @@ class Query:
         start = time.perf_counter()
         self._trees = trees_of(self._bodies)
         self._seconds["load"] = time.perf_counter() - start
-        self._at_start = static_query(self._trees, self._bodies, self._accuracy)
+        start = time.perf_counter()
+        placed = next(legs_of(self._bodies, self._trees, 0.0)).bodies
+        self._at_start = static_query(self._trees, placed, self._accuracy)
+        self._solids = Containment(placed, self._trees, self._at_start) if solid else None
+        self._seconds["query"] = time.perf_counter() - start
         self._moving: kernels.ContactQuery | None = None
         self._legs: LegQueries | None = None
         if any(isinstance(body.motion, PathMotion) for body in self._bodies):
@@ -148,6 +156,11 @@ class Query:
 
     def _step(self, pops: int) -> bool:
         """Advance the question at t = 0, then the moving one; return whether all is answered."""
+        if self._solids is not None:
+            if not self._solids.advance(pops):
+                return False
+            if self._solids.contained is not None:
+                return True
         if self._legs is not None:
             return self._legs.step(pops)
         if self._moving is None:
@@ -176,6 +189,8 @@ class Query:
         return time_tolerance(self._accuracy, self._duration)
 
     def _answer(self) -> FirstContact:
+        if self._solids is not None and self._solids.contained is not None:
+            return FirstContact.of(self._solids.answer(), self._stats())
         if self._legs is not None:
             return self._legs.answer(self._stats())
         return FirstContact.of(self._contact(), self._stats())
@@ -198,7 +213,8 @@ class Query:
         moving = (0, 0, 0, 0) if self._moving is None else self._moving.counts()
         if self._legs is not None:
             moving = self._legs.counts
-        return sum_of(self._at_start.counts(), moving)
+        inside = (0, 0, 0, 0) if self._solids is None else self._solids.counts
+        return sum_of(self._at_start.counts(), sum_of(moving, inside))
 
     def _stats(self) -> QueryStats:
         return stats_of(self._trees, self._counts(), dict(self._seconds))
@@ -209,6 +225,7 @@ def first_contact(
     b: Body | Shape,
     duration: float | None = None,
     accuracy: Accuracy | None = None,
+    solid: bool = False,
 ) -> FirstContact:
     """Return when and where two bodies first touch in the closed interval [0, duration].
 
@@ -221,14 +238,16 @@ def first_contact(
         b: likewise.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of the answer, and the limits after which it is `unresolved`.
+        solid: whether a body inside the other at t = 0 is contact too, without touching: closed
+            surfaces then hold what is inside them.
 
     Raises:
         MotionError: the duration is negative or not finite, a sampled method is asked for (not
             answered by this version), or positions leave the range of double.
-        MeshError: a mesh cannot be read or is refused.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
     accuracy = _EXACT if accuracy is None else accuracy
-    query = Query(a, b, duration, accuracy)
+    query = Query(a, b, duration, accuracy, solid=solid)
     return query.advance(accuracy.max_iterations, accuracy.timeout)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.errors import MotionError
 from obbcli.motion import as_body
 from obbcli.question import (
     NO_LIMIT,
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
 
     from obbcli.motion import Body, Shape
     from obbcli.question import Trees
+    from obbcli.results import FirstContact
 
 _EXACT = Accuracy()
 # Looking them up in the enumeration takes as long as a test of two boxes.
@@ -53,21 +53,21 @@ def collide(
         b: likewise.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: limits and coarseness; None: the exact answer.
-        solid: whether closed surfaces hold what is inside them.
+        solid: whether a body inside the other at t = 0 is contact too, without touching: closed
+            surfaces then hold what is inside them.
 
     Raises:
-        MotionError: `solid` or a sampled method is asked for (not answered by this version), the
-            duration is negative or not finite, or positions leave the range of double.
-        MeshError: a mesh cannot be read or is refused.
+        MotionError: a sampled method is asked for (not answered by this version), the duration is
+            negative or not finite, or positions leave the range of double.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
     accuracy = _EXACT if accuracy is None else accuracy
-    if solid:
-        raise MotionError("solid=True", "is not answered by this version", "ask about surfaces")
     bodies = as_body(a), as_body(b)
-    if duration_of(duration, bodies) > 0 or accuracy.clearance > 0 or accuracy.method == "sampled":
-        return _collide_moving(bodies, duration, accuracy)
+    is_at_rest = duration_of(duration, bodies) == 0 and accuracy.clearance == 0
+    if solid or not is_at_rest or accuracy.method == "sampled":
+        return _collide_moving(bodies, duration, accuracy, solid)
     start = perf_counter()
     trees = trees_of(bodies)
     loaded = perf_counter()
@@ -82,19 +82,24 @@ def collide(
 
 
 def _collide_moving(
-    bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy
+    bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy, solid: bool
 ) -> Collision:
     # Imported where it is needed: bodies at rest answer without it.
     from obbcli.contact import Query
 
-    query = Query(*bodies, duration, accuracy, any_contact=True)
-    found = query.advance(accuracy.max_iterations, accuracy.timeout)
+    query = Query(*bodies, duration, accuracy, solid=solid, any_contact=True)
+    return collision_of(query.advance(accuracy.max_iterations, accuracy.timeout))
+
+
+def collision_of(found: FirstContact) -> Collision:
+    """Return the yes or no of an answer to `Query` with `any_contact`."""
     a, b = found.triangle_a, found.triangle_b
     return Collision(
         status=found.status,
         witness=None if a is None or b is None else (a, b),
         approximate=found.approximate,
         error_bound=found.error_bound,
+        contained=found.contained,
         stats=found.stats,
     )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from obbcli.errors import UnresolvedError
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 Vector: TypeAlias = tuple[float, float, float]
+# The body that lies inside the other, or a part of it does.
+Inner: TypeAlias = Literal["a", "b"]
 
 
 class Status(str, Enum):
@@ -72,6 +74,8 @@ class Collision(NamedTuple):
         error_bound: mesh units; how far apart the surfaces can be although contact is said. 0
             where exact.
         stats: what the question cost.
+        contained: of solids that do not touch, `"a"` where A or a connected part of it lies inside
+            B, else `"b"` where B or a part of it lies inside A. None elsewhere.
     """
 
     status: Status
@@ -79,6 +83,7 @@ class Collision(NamedTuple):
     approximate: bool
     error_bound: float
     stats: QueryStats
+    contained: Inner | None = None
 
     @property
     def collides(self) -> bool:
@@ -103,7 +108,8 @@ class Contact:
             where boxes met or nothing is known beyond lo.
         evidence: `"intersecting"`: triangles proven to meet at hi; `"within_tolerance"`: points of
             both proven closer than `distance` at hi; `"boxes"`: boxes that stand for triangles met.
-        point: world coordinates at `time`, midway between `point_a` and `point_b`.
+        point: world coordinates at `time`, midway between `point_a` and `point_b`; of a body inside
+            the other, one of its vertices.
         point_a: the nearest point of A.
         point_b: the nearest point of B.
         normal: unit, from A to B: the axis that separated the two last.
@@ -113,6 +119,9 @@ class Contact:
         triangle_b: row of B's mesh file.
         feature: what meets what, A's first: `"vertex-face"`, `"edge-edge"`, ...; `"box"`.
         distance: mesh units; proven bound on the gap at hi. 0 where triangles intersect.
+        contained: of solids that do not touch at t = 0, `"a"` where A or a connected part of it
+            lies inside B, else `"b"` where B or a part of it lies inside A. None elsewhere. It is
+            its own proof: as no surfaces meet, evidence, triangles and distance are None.
         approximate: whether boxes stood for triangles, so that contact is not proven.
         error_bound: mesh units; how far apart the surfaces can be although contact is said. 0 where
             exact.
@@ -132,7 +141,7 @@ class Contact:
     triangle_b: int | None = None
     feature: str | None = None
     distance: float | None = None
-    contained: bool | None = None
+    contained: Inner | None = None
     approximate: bool = False
     error_bound: float = 0.0
 

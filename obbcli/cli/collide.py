@@ -79,10 +79,7 @@ def command(
     question = Question.of(pose, motion, accuracy)
     _refuse_contradictions(question, accuracy, flags)
     refuse_unanswered(
-        (
-            ("--solid", flags["solid"], "leave it out to ask about the surfaces"),
-            ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
-        )
+        (("--method sampled", question.accuracy.method == "sampled", "leave it out"),)
     )
     keep_inputs(common.output, (a, b))
     files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
@@ -126,36 +123,30 @@ def _ask(
     from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
-    answer = _answer(question, bodies, progress=common.shows_progress)
+    answer = _answer(question, bodies, solid=flags["solid"], progress=common.shows_progress)
     # Hashes and centroids cost time, and only a document shows them.
     record = collide_record(
         [file.source(with_sha256=common.json) for file in files],
         motion_part(bodies, question.duration) if common.json else {},
         question.accuracy,
         answer,
+        flags["solid"],
         _pairs(bodies, flags["limit"]) if flags["all_pairs"] else None,
     )
     return with_load_time(record, files)
 
 
-def _answer(question: Question, bodies: tuple[Body, Body], *, progress: bool) -> Collision:
+def _answer(
+    question: Question, bodies: tuple[Body, Body], *, solid: bool, progress: bool
+) -> Collision:
     """Return what `obbcli.collide` says; a moving question can be watched and interrupted."""
     from obbcli.contact import Query
-    from obbcli.query import collide
-    from obbcli.results import Collision
+    from obbcli.query import collide, collision_of
 
     if not question.moves:
-        return collide(*bodies, question.duration, question.accuracy)
-    query = Query(*bodies, question.duration, question.accuracy, any_contact=True)
-    found = run(query, question.accuracy, progress=progress)
-    a, b = found.triangle_a, found.triangle_b
-    return Collision(
-        status=found.status,
-        witness=None if a is None or b is None else (a, b),
-        approximate=found.approximate,
-        error_bound=found.error_bound,
-        stats=found.stats,
-    )
+        return collide(*bodies, question.duration, question.accuracy, solid)
+    query = Query(*bodies, question.duration, question.accuracy, solid=solid, any_contact=True)
+    return collision_of(run(query, question.accuracy, progress=progress))
 
 
 def _pairs(bodies: tuple[Body, Body], limit: int | None) -> tuple[NDArray[int64], bool]:

@@ -72,26 +72,30 @@ def command(
         (
             ("--all-contacts", flags["all_contacts"], "leave it out to ask about the first"),
             ("--limit", flags["limit"] is not None, "leave it out to ask about the first"),
-            ("--solid", flags["solid"], "leave it out to ask about the surfaces"),
             ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
         )
     )
     keep_inputs(common.output, (a, b))
     files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
     with naming_options(question):
-        record = _ask(question, files, common)
+        record = _ask(question, files, flags, common)
     emit(record, first_contact_tables, common, bare=first_contact_bare)
     return exit_code(record["result"]["status"], asked=flags["exit_code"])
 
 
-def _ask(question: Question, files: tuple[Input, Input], common: CommonOptions) -> Record:
+def _ask(
+    question: Question,
+    files: tuple[Input, Input],
+    flags: dict[str, Any],
+    common: CommonOptions,
+) -> Record:
     """Put the question and return its record."""
     from obbcli.contact import Query
     from obbcli.report.first_contact import first_contact_record
     from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
-    query = Query(*bodies, question.duration, question.accuracy)
+    query = Query(*bodies, question.duration, question.accuracy, solid=flags["solid"])
     answer = run(query, question.accuracy, progress=common.shows_progress)
     # Hashes and centroids cost time, and only a document shows them.
     record = first_contact_record(
@@ -99,5 +103,6 @@ def _ask(question: Question, files: tuple[Input, Input], common: CommonOptions) 
         motion_part(bodies, question.duration) if common.json else {},
         question.accuracy,
         answer,
+        flags["solid"],
     )
     return with_load_time(record, files)

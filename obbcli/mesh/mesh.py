@@ -91,7 +91,7 @@ class Mesh:
     @cached_property
     def duplicate_count(self) -> int:
         """Return how many triangles repeat an earlier one: same three places, in any order."""
-        return topology.duplicate_count(self._corner_ids)
+        return topology.duplicate_count(self.corner_ids)
 
     @cached_property
     def is_watertight(self) -> bool:
@@ -101,10 +101,10 @@ class Mesh:
         must be run through exactly once in either direction. Triangles with two corners at one
         position bound nothing and are left out; a surface of those alone is not watertight.
         """
-        return topology.is_watertight(self._corner_ids)
+        return topology.is_watertight(self.corner_ids)
 
     @cached_property
-    def _corner_ids(self) -> NDArray[np.int64]:
+    def corner_ids(self) -> NDArray[np.int64]:
         """Return the corners as numbers of distinct positions, (F, 3)."""
         return topology.position_ids(self.vertices)[self.triangles]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -76,3 +76,48 @@ def is_watertight(corners: NDArray[np.int64]) -> bool:
     if (forward[1:] == forward[:-1]).any():
         return False
     return bool(np.array_equal(forward, np.sort(end * count + start)))
+
+
+class Seam(NamedTuple):
+    """An edge at which a surface does not close.
+
+    Attributes:
+        triangle: the first row with that edge.
+        corner: where the edge starts in that row; it ends at the next corner.
+        along: how many triangles run through it in that direction.
+        against: how many in the other.
+    """
+
+    triangle: int
+    corner: int
+    along: int
+    against: int
+
+
+def bad_seams(corners: NDArray[np.int64]) -> tuple[int, Seam] | None:
+    """Return how many edges keep a surface from being watertight, and one of the first triangle.
+
+    None where there are none. Collapsed triangles bound nothing, as in `is_watertight`.
+    """
+    a, b, c = corners.T
+    rows = np.flatnonzero((a != b) & (b != c) & (c != a))
+    if len(rows) == 0:
+        return None
+    start = corners[rows].reshape(-1)
+    end = corners[rows][:, [1, 2, 0]].reshape(-1)
+    is_up = start < end
+    keys = np.where(is_up, start, end) * (int(corners.max()) + 1) + np.where(is_up, end, start)
+    order = np.argsort(keys, kind="stable")
+    ordered = keys[order]
+    heads = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
+    up = np.add.reduceat(is_up[order].astype(np.int64), heads)
+    down = np.diff(np.append(heads, len(keys))) - up
+    bad = np.flatnonzero((up != 1) | (down != 1))
+    if len(bad) == 0:
+        return None
+    # A stable order: the head of each run is the edge's first place in the file.
+    worst = bad[np.argmin(order[heads[bad]])]
+    place = int(order[heads[worst]])
+    both = int(up[worst]), int(down[worst])
+    along, against = both if is_up[place] else both[::-1]
+    return len(bad), Seam(int(rows[place // 3]), place % 3, along, against)

@@ -31,6 +31,7 @@ def collide_record(
     motion: Record,
     accuracy: Accuracy,
     answer: Collision,
+    solid: bool,
     pairs: tuple[NDArray[int64], bool] | None = None,
 ) -> Record:
     """Return the record of a question.
@@ -40,6 +41,7 @@ def collide_record(
         motion: as `motion_part` gives it.
         accuracy: as used.
         answer: what came out.
+        solid: whether closed surfaces were to hold what is inside them.
         pairs: intersecting pairs of triangles, (N, 2), and whether these are all; None where they
             were not asked for.
     """
@@ -50,6 +52,7 @@ def collide_record(
         "witness": None if answer.witness is None else [int(i) for i in answer.witness],
         "approximate": answer.approximate,
         "error_bound": float(answer.error_bound),
+        "contained": answer.contained,
     }
     if pairs is not None:
         result["pairs"] = pairs[0].tolist()
@@ -59,6 +62,7 @@ def collide_record(
         {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
         motion=motion,
         accuracy=accuracy.as_dict(),
+        solid=solid,
         result=result,
         stats=stats_part(answer.stats),
     )
@@ -71,6 +75,7 @@ def collide_tables(record: Record) -> list[Table]:
         *source_rows(record),
         ("status", result["status"]),
         ("answer", _SENTENCES[result["status"]].format(why_open(record)) + _reservation(result)),
+        *contained_rows(result),
     ]
     if result["witness"] is not None:
         of_a, of_b = result["witness"]
@@ -108,6 +113,15 @@ def why_open(record: Record) -> str:
     ):
         return "a limit was reached"
     return "a limit was reached or the digits of doubles ended"
+
+
+def contained_rows(result: Record) -> list[tuple[str, str]]:
+    """Return the row that says which body lies inside the other."""
+    inner = result["contained"]
+    if inner is None:
+        return []
+    outer = "A" if inner == "b" else "B"
+    return [("contained", f"{inner.upper()}, or a part of it, lies inside {outer}")]
 
 
 def cost_rows(stats: Record) -> list[tuple[str, str]]:

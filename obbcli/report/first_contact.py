@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.report.collide import cost_rows, source_rows, why_open
+from obbcli.report.collide import contained_rows, cost_rows, source_rows, why_open
 from obbcli.report.record import document, stats_part
 from obbcli.report.table import Table, length, point
 
@@ -23,7 +23,11 @@ _AT_HI = {
 
 
 def first_contact_record(
-    sources: Sequence[Source], motion: Record, accuracy: Accuracy, answer: FirstContact
+    sources: Sequence[Source],
+    motion: Record,
+    accuracy: Accuracy,
+    answer: FirstContact,
+    solid: bool,
 ) -> Record:
     """Return the record of a question.
 
@@ -32,6 +36,7 @@ def first_contact_record(
         motion: as `motion_part` gives it.
         accuracy: as used.
         answer: what came out; its fields become the result, but for the stats.
+        solid: whether closed surfaces were to hold what is inside them.
     """
     values = {field.name: getattr(answer, field.name) for field in fields(answer)}
     stats = values.pop("stats")
@@ -40,6 +45,7 @@ def first_contact_record(
         {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
         motion=motion,
         accuracy=accuracy.as_dict(),
+        solid=solid,
         result=values | {"status": answer.status.value},
         stats=stats_part(stats),
     )
@@ -49,6 +55,7 @@ def first_contact_tables(record: Record) -> list[Table]:
     """Return the table of a record."""
     result = record["result"]
     rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
+    rows += contained_rows(result)
     if result["point"] is not None:
         rows.append(("point", point(result["point"])))
     if result["normal"] is not None:

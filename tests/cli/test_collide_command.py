@@ -15,7 +15,7 @@ from oracles import triangles_intersect
 
 from obbcli import Accuracy, __version__
 
-KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "result", "stats"]
+KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "solid", "result", "stats"]
 
 
 def pipe_in(monkeypatch: pytest.MonkeyPatch, data: bytes) -> None:
@@ -50,6 +50,7 @@ def test_collide_says_that_cubes_a_hair_apart_are_apart(here, obbtree):
         "witness": None,
         "approximate": False,
         "error_bound": 0.0,
+        "contained": None,
     }
 
 
@@ -73,6 +74,7 @@ def test_collide_document_holds_what_was_asked_and_answered(here, obbtree):
     }
     assert document["accuracy"] == Accuracy().as_dict()
     assert document["result"]["status"] == "overlap_at_start"
+    assert document["solid"] is False
     assert document["result"]["collides"] is True
     assert document["stats"]["triangle_tests"] >= 1
     assert set(document["stats"]["seconds"]) == {"load", "query"}

@@ -12,10 +12,9 @@ from obbcli import Accuracy
 @pytest.mark.parametrize(
     "words",
     [
-        ("--solid",),
         ("--method", "sampled"),
         ("--method", "sampled", "--steps", "10", "--integrator", "rk4"),
-        ("--vel", "1", "0", "0", "--solid"),
+        ("--vel", "1", "0", "0", "--method", "sampled"),
     ],
 )
 def test_collide_never_ignores_what_it_cannot_answer_yet(here, obbtree, words):

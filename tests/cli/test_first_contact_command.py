@@ -13,7 +13,7 @@ import pytest
 from obbcli import Accuracy, FirstContact
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
-KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "result", "stats"]
+KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "solid", "result", "stats"]
 
 
 def ask(obbtree, a, b, *words):
@@ -186,7 +186,6 @@ def test_first_contact_table_says_what_is_proven(here, obbtree, other, words, te
         ("--all-contacts",),
         ("--all-contacts", "--limit", "3"),
         ("--limit", "3"),
-        ("--solid",),
         ("--method", "sampled"),
         ("--method", "sampled", "--steps", "10", "--integrator", "rk4"),
     ],
