@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from scenes import random_rotation
 from screw_answers import as_body, ask, bounds
 from screw_random import KINDS, Kind, random_pair
 
@@ -17,7 +18,7 @@ from obbcli import FirstContact, Status
 if TYPE_CHECKING:
     from oracles_screw import Mover
 
-SEEDS = range(500, 512)
+SEEDS = range(500, 530)
 GRID = 2.0**-20
 FAR = np.array([64.0, -1024.0, 0.25])
 DRIFT = np.array([4.0, -16.0, 0.5])
@@ -156,6 +157,32 @@ def test_turned_world_has_the_same_answer(kind: Kind) -> None:
 
 
 @laws
+def test_world_seen_from_elsewhere_has_the_same_answer(kind: Kind) -> None:
+    met = 0
+    for seed in SEEDS:
+        pair = random_pair(kind, seed)
+        turn, shift = random_rotation(seed), np.array([0.75, -3.0, 1.5])
+
+        image = mapped(
+            pair,
+            rotation=lambda q, turn=turn: turn @ q,
+            translation=lambda s, turn=turn, shift=shift: turn @ s + shift,
+            pivot=lambda k, turn=turn, shift=shift: turn @ k + shift,
+            velocity=lambda v, turn=turn: turn @ v,
+            spin=lambda w, turn=turn: turn @ w,
+        )
+
+        one, two = ask(*pair, 1.0), ask(*image, 1.0)
+        assert one.status is two.status, seed
+        if one.status is Status.CONTACT:
+            met += 1
+            assert abs(bounds(one)[0] - bounds(two)[0]) <= 1e-9
+            assert one.normal is not None
+            assert two.point == pytest.approx(turn @ np.asarray(one.point) + shift, abs=1e-6)
+    assert met > 2
+
+
+@laws
 def test_common_velocity_changes_nothing(kind: Kind) -> None:
     for seed in SEEDS:
         pair = on_grid(kind, seed)
@@ -224,12 +251,20 @@ def test_duration_before_the_contact_is_free_of_it(kind: Kind) -> None:
 
 @laws
 def test_collide_agrees_with_first_contact(kind: Kind) -> None:
-    for seed in range(500, 560):
+    seen = set()
+    for seed in range(9000, 9700):
         a, b = random_pair(kind, seed)
+        if seed % 7 == 0:
+            b = replace(b, translation=a.translation + 0.4 * (b.translation - a.translation))
+        duration = (1.0, 0.25, 4.0)[seed % 3]
 
-        answer, verdict = ask(a, b, 1.0), obbcli.collide(as_body(a), as_body(b), 1.0)
+        answer, verdict = ask(a, b, duration), obbcli.collide(as_body(a), as_body(b), duration)
 
-        assert verdict.collides == (answer.status is Status.CONTACT), seed
+        seen.add(answer.status)
+        assert verdict.status is answer.status, seed
+        assert verdict.collides == (answer.status is not Status.SEPARATED)
+        assert (verdict.witness is None) == (answer.status is Status.SEPARATED)
+    assert seen == {Status.SEPARATED, Status.CONTACT, Status.OVERLAP_AT_START}
 
 
 def test_bodies_at_rest_are_asked_like_collide() -> None:
