@@ -1,14 +1,28 @@
-"""What the commands that put a question share: refusals, limits, Ctrl-C, exit codes."""
+"""What the commands about A and B share: options, refusals, limits, Ctrl-C, exit codes."""
 
 from __future__ import annotations
 
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
 
 from obbcli import __version__
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError
+from obbcli.cli.inputs import keep_inputs, read_pair
+from obbcli.cli.options import CommonOptions, common_options, gathered, option, verify_option
 from obbcli.cli.progress import proving
+from obbcli.cli.question import (
+    AccuracyOptions,
+    MotionOptions,
+    PoseOptions,
+    Question,
+    accuracy_options,
+    motion_options,
+    pose_options,
+)
+from obbcli.cli.types import PathName
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
@@ -16,10 +30,84 @@ if TYPE_CHECKING:
 
     from obbcli.accuracy import Accuracy
     from obbcli.cli.inputs import Input
-    from obbcli.cli.question import Question
+    from obbcli.cli.options import Decorator
     from obbcli.contact import Query
-    from obbcli.report.record import Record
+    from obbcli.motion import Body
+    from obbcli.report.record import Record, Setting
     from obbcli.results import FirstContact
+
+QUESTION = "Question"
+"""The heading over the options of one command about A and B alone."""
+
+
+class Asked(NamedTuple):
+    """What every command about A and B is told."""
+
+    a: str
+    b: str
+    exit_code: bool
+    pose: PoseOptions
+    motion: MotionOptions
+    accuracy: AccuracyOptions
+    no_verify: bool
+    common: CommonOptions
+
+    def question(self) -> Question:
+        """Return the question.
+
+        Raises:
+            UsageError: a number is refused, or an option has no meaning with the others.
+        """
+        return Question.of(self.pose, self.motion, self.accuracy)
+
+    def read(self) -> tuple[Input, Input]:
+        """Return A and B.
+
+        Raises:
+            UsageError: the answer would go where one of them is, or both are standard input.
+            ObbError: one of them cannot be read, as `read` says.
+        """
+        keep_inputs(self.common.output, (self.a, self.b))
+        verify = not self.no_verify
+        return read_pair(self.a, self.b, verify=verify, progress=self.common.shows_progress)
+
+    def setting(
+        self,
+        files: tuple[Input, Input],
+        bodies: tuple[Body, Body],
+        question: Question,
+        solid: bool | None = None,
+    ) -> Setting:
+        """Return what a record says of the question."""
+        from obbcli.report.record import Setting, motion_part
+
+        # Hashes and centroids cost time, and only a document shows them.
+        is_shown = self.common.json
+        sources = [file.source(with_sha256=is_shown) for file in files]
+        motion = motion_part(bodies, question.duration) if is_shown else {}
+        return Setting(sources, motion, question.accuracy, solid)
+
+
+def about_two(exit_code: str) -> Decorator:
+    """Return what gives a command its A and B, and all options of `asked`.
+
+    Args:
+        exit_code: the help of `--exit-code`.
+    """
+    return gathered(
+        "asked",
+        Asked,
+        (
+            click.argument("a", metavar="A", type=PathName()),
+            click.argument("b", metavar="B", type=PathName()),
+            option(QUESTION, "--exit-code", is_flag=True, help=exit_code),
+            pose_options,
+            motion_options,
+            accuracy_options,
+            verify_option,
+            common_options(),
+        ),
+    )
 
 
 def refuse_unanswered(asked: Iterable[tuple[str, Any, str]]) -> None:

@@ -6,26 +6,31 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli.cli.asking import exit_code, naming_options, refuse_unanswered, run, with_load_time
+from obbcli.cli.asking import (
+    QUESTION,
+    about_two,
+    exit_code,
+    naming_options,
+    refuse_unanswered,
+    run,
+    with_load_time,
+)
 from obbcli.cli.boundary import UsageError, note
-from obbcli.cli.inputs import keep_inputs, read_pair
-from obbcli.cli.options import Command, common_options, option, verify_option
+from obbcli.cli.options import Command, option
 from obbcli.cli.output import emit
-from obbcli.cli.question import Question, accuracy_options, motion_options, pose_options
-from obbcli.cli.types import PathName, Whole
+from obbcli.cli.types import Whole
 
 if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
     from obbcli.cli.options import CommonOptions
-    from obbcli.cli.question import AccuracyOptions, MotionOptions, PoseOptions
+    from obbcli.cli.question import AccuracyOptions, Question
     from obbcli.motion import Body
     from obbcli.report.record import Record
     from obbcli.results import Collision
-
-_QUESTION = "Question"
 
 
 @click.command(
@@ -40,53 +45,32 @@ Examples:
   obbtree collide a.stl b.stl --exit-code --quiet || echo "they touch"
 """,
 )
-@click.argument("a", metavar="A", type=PathName())
-@click.argument("b", metavar="B", type=PathName())
-@option(_QUESTION, "--all-pairs", is_flag=True, help="List every intersecting pair of triangles.")
+@option(QUESTION, "--all-pairs", is_flag=True, help="List every intersecting pair of triangles.")
 @option(
-    _QUESTION,
+    QUESTION,
     "--limit",
     type=Whole(1),
     metavar="N",
     help="List at most N pairs (with --all-pairs).",
 )
-@option(_QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
-@option(
-    _QUESTION,
-    "--exit-code",
-    is_flag=True,
-    help="Exit with 1 where they touch, 0 where they are proven apart.",
-)
-@pose_options
-@motion_options
-@accuracy_options
-@verify_option
-@common_options()
-def command(
-    a: str,
-    b: str,
-    pose: PoseOptions,
-    motion: MotionOptions,
-    accuracy: AccuracyOptions,
-    common: CommonOptions,
-    **flags: Any,
-) -> int:
+@option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
+@about_two("Exit with 1 where they touch, 0 where they are proven apart.")
+def command(asked: Asked, **flags: Any) -> int:
     """Do A and B touch, at rest or at any time of a motion? Touching counts; the answer is exact.
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. Triangles are
     named by their number in their file, from 0.
     """
-    question = Question.of(pose, motion, accuracy)
-    _refuse_contradictions(question, accuracy, flags)
+    question = asked.question()
+    _refuse_contradictions(question, asked.accuracy, flags)
     refuse_unanswered(
         (("--method sampled", question.accuracy.method == "sampled", "leave it out"),)
     )
-    keep_inputs(common.output, (a, b))
-    files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
+    files = asked.read()
     with naming_options(question):
-        record = _ask(question, files, flags, common)
-    _show(record, common)
-    return exit_code(record["result"]["status"], asked=flags["exit_code"])
+        record = _ask(asked, question, files, flags)
+    _show(record, asked.common)
+    return exit_code(record["result"]["status"], asked=asked.exit_code)
 
 
 def _refuse_contradictions(
@@ -113,24 +97,17 @@ def _refuse_contradictions(
 
 
 def _ask(
-    question: Question,
-    files: tuple[Input, Input],
-    flags: dict[str, Any],
-    common: CommonOptions,
+    asked: Asked, question: Question, files: tuple[Input, Input], flags: dict[str, Any]
 ) -> Record:
     """Put the question and return its record."""
     from obbcli.report.collide import collide_record
-    from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
-    answer = _answer(question, bodies, solid=flags["solid"], progress=common.shows_progress)
-    # Hashes and centroids cost time, and only a document shows them.
+    shows_progress = asked.common.shows_progress
+    answer = _answer(question, bodies, solid=flags["solid"], progress=shows_progress)
     record = collide_record(
-        [file.source(with_sha256=common.json) for file in files],
-        motion_part(bodies, question.duration) if common.json else {},
-        question.accuracy,
+        asked.setting(files, bodies, question, flags["solid"]),
         answer,
-        flags["solid"],
         _pairs(bodies, flags["limit"]) if flags["all_pairs"] else None,
     )
     return with_load_time(record, files)

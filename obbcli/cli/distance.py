@@ -6,17 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from obbcli.cli.asking import naming_options, with_load_time
+from obbcli.cli.asking import about_two, naming_options, with_load_time
 from obbcli.cli.boundary import ExitCode, UsageError
-from obbcli.cli.inputs import read_pair
-from obbcli.cli.options import Command, common_options, option, verify_option
+from obbcli.cli.options import Command
 from obbcli.cli.output import emit
-from obbcli.cli.question import Question, accuracy_options, motion_options, pose_options
 
 if TYPE_CHECKING:
+    from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
-    from obbcli.cli.options import CommonOptions
-    from obbcli.cli.question import AccuracyOptions, MotionOptions, PoseOptions
+    from obbcli.cli.question import AccuracyOptions, MotionOptions, Question
     from obbcli.report.record import Record
 
 # The other fields of `Accuracy` say nothing about bodies at rest.
@@ -36,25 +34,8 @@ Examples:
   obbtree distance a.stl b.stl --quiet
 """,
 )
-@click.argument("a", metavar="A")
-@click.argument("b", metavar="B")
-@option("Question", "--exit-code", is_flag=True, help="Exit with 1 where they touch, 0 where not.")
-@pose_options
-@motion_options
-@accuracy_options
-@verify_option
-@common_options()
-def command(
-    a: str,
-    b: str,
-    pose: PoseOptions,
-    motion: MotionOptions,
-    accuracy: AccuracyOptions,
-    common: CommonOptions,
-    *,
-    exit_code: bool,
-    no_verify: bool,
-) -> int:
+@about_two("Exit with 1 where they touch, 0 where not.")
+def command(asked: Asked) -> int:
     """How far apart are the surfaces of A and B, and where are they nearest?
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. The distance
@@ -63,16 +44,16 @@ def command(
     """
     from obbcli.report.distance import distance_bare, distance_tables
 
-    _refuse_what_says_nothing(motion, accuracy)
-    question = Question.of(pose, motion, accuracy)
-    files = read_pair(a, b, verify=not no_verify, progress=common.shows_progress)
+    _refuse_what_says_nothing(asked.motion, asked.accuracy)
+    question = asked.question()
+    files = asked.read()
     with naming_options(question):
-        record = _ask(question, files, common)
-    emit(record, distance_tables, common, bare=distance_bare)
+        record = _ask(asked, question, files)
+    emit(record, distance_tables, asked.common, bare=distance_bare)
     if not record["result"]["complete"]:
         return ExitCode.UNRESOLVED
     touches = record["result"]["distance"] == 0
-    return ExitCode.CONTACT if exit_code and touches else ExitCode.ANSWERED
+    return ExitCode.CONTACT if asked.exit_code and touches else ExitCode.ANSWERED
 
 
 def _refuse_what_says_nothing(motion: MotionOptions, accuracy: AccuracyOptions) -> None:
@@ -90,22 +71,15 @@ def _option(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _ask(question: Question, files: tuple[Input, Input], common: CommonOptions) -> Record:
+def _ask(asked: Asked, question: Question, files: tuple[Input, Input]) -> Record:
     """Put the question and return its record."""
     from obbcli.nearest import measure
     from obbcli.report.distance import distance_record
-    from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
     answer, is_complete = measure(*bodies, question.accuracy)
-    # Hashes and centroids cost time, and only a document shows them.
-    record = distance_record(
-        [file.source(with_sha256=common.json) for file in files],
-        motion_part(bodies, 0.0) if common.json else {},
-        question.accuracy,
-        answer,
-        is_complete=is_complete,
-    )
+    setting = asked.setting(files, bodies, question)
+    record = distance_record(setting, answer, is_complete=is_complete)
     return with_load_time(record, files)
 
 

@@ -6,20 +6,24 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli.cli.asking import exit_code, naming_options, refuse_unanswered, run, with_load_time
-from obbcli.cli.inputs import keep_inputs, read_pair
-from obbcli.cli.options import Command, common_options, option, verify_option
+from obbcli.cli.asking import (
+    QUESTION,
+    about_two,
+    exit_code,
+    naming_options,
+    refuse_unanswered,
+    run,
+    with_load_time,
+)
+from obbcli.cli.options import Command, option
 from obbcli.cli.output import emit
-from obbcli.cli.question import Question, accuracy_options, motion_options, pose_options
-from obbcli.cli.types import PathName, Whole
+from obbcli.cli.types import Whole
 
 if TYPE_CHECKING:
+    from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
-    from obbcli.cli.options import CommonOptions
-    from obbcli.cli.question import AccuracyOptions, MotionOptions, PoseOptions
+    from obbcli.cli.question import Question
     from obbcli.report.record import Record
-
-_QUESTION = "Question"
 
 
 @click.command(
@@ -33,31 +37,11 @@ Examples:
   obbtree first-contact a.stl b.stl --omega 0 0 90 --degrees --exit-code --quiet
 """,
 )
-@click.argument("a", metavar="A", type=PathName())
-@click.argument("b", metavar="B", type=PathName())
-@option(_QUESTION, "--all-contacts", is_flag=True, help="List every pair of triangles that meets.")
-@option(_QUESTION, "--limit", type=Whole(1), metavar="N", help="List N at most.")
-@option(_QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
-@option(
-    _QUESTION,
-    "--exit-code",
-    is_flag=True,
-    help="Exit with 1 where they touch, 0 where they are proven apart.",
-)
-@pose_options
-@motion_options
-@accuracy_options
-@verify_option
-@common_options()
-def command(
-    a: str,
-    b: str,
-    pose: PoseOptions,
-    motion: MotionOptions,
-    accuracy: AccuracyOptions,
-    common: CommonOptions,
-    **flags: Any,
-) -> int:
+@option(QUESTION, "--all-contacts", is_flag=True, help="List every pair of triangles that meets.")
+@option(QUESTION, "--limit", type=Whole(1), metavar="N", help="List N at most.")
+@option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
+@about_two("Exit with 1 where they touch, 0 where they are proven apart.")
+def command(asked: Asked, **flags: Any) -> int:
     """When do A and B first touch as they move, where, and with which triangles?
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. The time comes
@@ -66,7 +50,7 @@ def command(
     """
     from obbcli.report.first_contact import first_contact_bare, first_contact_tables
 
-    question = Question.of(pose, motion, accuracy)
+    question = asked.question()
     # The contract's options of later versions: known, and refused by name.
     refuse_unanswered(
         (
@@ -75,34 +59,22 @@ def command(
             ("--method sampled", question.accuracy.method == "sampled", "leave it out"),
         )
     )
-    keep_inputs(common.output, (a, b))
-    files = read_pair(a, b, verify=not flags["no_verify"], progress=common.shows_progress)
+    files = asked.read()
     with naming_options(question):
-        record = _ask(question, files, flags, common)
-    emit(record, first_contact_tables, common, bare=first_contact_bare)
-    return exit_code(record["result"]["status"], asked=flags["exit_code"])
+        record = _ask(asked, question, files, flags)
+    emit(record, first_contact_tables, asked.common, bare=first_contact_bare)
+    return exit_code(record["result"]["status"], asked=asked.exit_code)
 
 
 def _ask(
-    question: Question,
-    files: tuple[Input, Input],
-    flags: dict[str, Any],
-    common: CommonOptions,
+    asked: Asked, question: Question, files: tuple[Input, Input], flags: dict[str, Any]
 ) -> Record:
     """Put the question and return its record."""
     from obbcli.contact import Query
     from obbcli.report.first_contact import first_contact_record
-    from obbcli.report.record import motion_part
 
     bodies = question.bodies(files)
     query = Query(*bodies, question.duration, question.accuracy, solid=flags["solid"])
-    answer = run(query, question.accuracy, progress=common.shows_progress)
-    # Hashes and centroids cost time, and only a document shows them.
-    record = first_contact_record(
-        [file.source(with_sha256=common.json) for file in files],
-        motion_part(bodies, question.duration) if common.json else {},
-        question.accuracy,
-        answer,
-        flags["solid"],
-    )
+    answer = run(query, question.accuracy, progress=asked.common.shows_progress)
+    record = first_contact_record(asked.setting(files, bodies, question, flags["solid"]), answer)
     return with_load_time(record, files)

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.report.record import document, stats_part
+from obbcli.report.record import answer_document
 from obbcli.report.table import Table, count, length, seconds
 from obbcli.results import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy import int64
     from numpy.typing import NDArray
 
-    from obbcli.accuracy import Accuracy
-    from obbcli.report.record import Record, Source
+    from obbcli.report.record import Record, Setting
     from obbcli.results import Collision
 
 _SENTENCES = {
@@ -27,21 +24,15 @@ _SENTENCES = {
 
 
 def collide_record(
-    sources: Sequence[Source],
-    motion: Record,
-    accuracy: Accuracy,
+    setting: Setting,
     answer: Collision,
-    solid: bool,
     pairs: tuple[NDArray[int64], bool] | None = None,
 ) -> Record:
     """Return the record of a question.
 
     Args:
-        sources: the files of A and B.
-        motion: as `motion_part` gives it.
-        accuracy: as used.
+        setting: what was asked.
         answer: what came out.
-        solid: whether closed surfaces were to hold what is inside them.
         pairs: intersecting pairs of triangles, (N, 2), and whether these are all; None where they
             were not asked for.
     """
@@ -57,15 +48,7 @@ def collide_record(
     if pairs is not None:
         result["pairs"] = pairs[0].tolist()
         result["pairs_complete"] = pairs[1]
-    return document(
-        "collide",
-        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
-        motion=motion,
-        accuracy=accuracy.as_dict(),
-        solid=solid,
-        result=result,
-        stats=stats_part(answer.stats),
-    )
+    return answer_document("collide", setting, result, answer.stats)
 
 
 def collide_tables(record: Record) -> list[Table]:

@@ -5,50 +5,32 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.report.collide import cost_rows, source_rows
-from obbcli.report.record import document, stats_part
+from obbcli.report.record import answer_document
 from obbcli.report.table import Table, point
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from obbcli.accuracy import Accuracy
-    from obbcli.report.record import Record, Source
+    from obbcli.report.record import Record, Setting
     from obbcli.results import Distance
 
 
-def distance_record(
-    sources: Sequence[Source],
-    motion: Record,
-    accuracy: Accuracy,
-    answer: Distance,
-    *,
-    is_complete: bool,
-) -> Record:
+def distance_record(setting: Setting, answer: Distance, *, is_complete: bool) -> Record:
     """Return the record of a question.
 
     Args:
-        sources: the files of A and B.
-        motion: as `motion_part` gives it.
-        accuracy: as used.
+        setting: what was asked.
         answer: what came out.
         is_complete: whether the search ended before a limit of pops or time.
     """
-    return document(
-        "distance",
-        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
-        motion=motion,
-        accuracy=accuracy.as_dict(),
-        result={
-            "distance": answer.distance,
-            "bounds": list(answer.bounds),
-            "point_a": list(answer.point_a),
-            "point_b": list(answer.point_b),
-            "triangle_a": answer.triangle_a,
-            "triangle_b": answer.triangle_b,
-            "complete": is_complete,
-        },
-        stats=stats_part(answer.stats),
-    )
+    result = {
+        "distance": answer.distance,
+        "bounds": list(answer.bounds),
+        "point_a": list(answer.point_a),
+        "point_b": list(answer.point_b),
+        "triangle_a": answer.triangle_a,
+        "triangle_b": answer.triangle_b,
+        "complete": is_complete,
+    }
+    return answer_document("distance", setting, result, answer.stats)
 
 
 def distance_tables(record: Record) -> list[Table]:

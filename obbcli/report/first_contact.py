@@ -6,14 +6,11 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from obbcli.report.collide import contained_rows, cost_rows, source_rows, why_open
-from obbcli.report.record import document, stats_part
+from obbcli.report.record import answer_document
 from obbcli.report.table import Table, length, point
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from obbcli.accuracy import Accuracy
-    from obbcli.report.record import Record, Source
+    from obbcli.report.record import Record, Setting
     from obbcli.results import FirstContact
 
 _AT_HI = {
@@ -22,33 +19,17 @@ _AT_HI = {
 }
 
 
-def first_contact_record(
-    sources: Sequence[Source],
-    motion: Record,
-    accuracy: Accuracy,
-    answer: FirstContact,
-    solid: bool,
-) -> Record:
+def first_contact_record(setting: Setting, answer: FirstContact) -> Record:
     """Return the record of a question.
 
     Args:
-        sources: the files of A and B.
-        motion: as `motion_part` gives it.
-        accuracy: as used.
+        setting: what was asked.
         answer: what came out; its fields become the result, but for the stats.
-        solid: whether closed surfaces were to hold what is inside them.
     """
     values = {field.name: getattr(answer, field.name) for field in fields(answer)}
     stats = values.pop("stats")
-    return document(
-        "first-contact",
-        {name: source._asdict() for name, source in zip("ab", sources, strict=True)},
-        motion=motion,
-        accuracy=accuracy.as_dict(),
-        solid=solid,
-        result=values | {"status": answer.status.value},
-        stats=stats_part(stats),
-    )
+    result = values | {"status": answer.status.value}
+    return answer_document("first-contact", setting, result, stats)
 
 
 def first_contact_tables(record: Record) -> list[Table]:

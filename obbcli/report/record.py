@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from obbcli import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
     from obbcli.motion import Body
     from obbcli.results import QueryStats
@@ -39,6 +40,22 @@ class Source(NamedTuple):
     triangle_count: int | None
 
 
+class Setting(NamedTuple):
+    """What a question about two bodies was asked with.
+
+    Attributes:
+        sources: the files of A and B.
+        motion: as `motion_part` gives it.
+        accuracy: as used.
+        solid: whether closed surfaces were to hold what is inside them; None where nobody may ask.
+    """
+
+    sources: Sequence[Source]
+    motion: Record
+    accuracy: Accuracy
+    solid: bool | None = None
+
+
 def document(command: str, inputs: Any, **parts: Any) -> Record:
     """Return a record of one command, its parts in the order given."""
     head = {
@@ -47,6 +64,20 @@ def document(command: str, inputs: Any, **parts: Any) -> Record:
         "inputs": inputs,
     }
     return head | parts
+
+
+def answer_document(command: str, setting: Setting, result: Record, stats: QueryStats) -> Record:
+    """Return the record of an answer about two bodies."""
+    a, b = setting.sources
+    return document(
+        command,
+        {"a": a._asdict(), "b": b._asdict()},
+        motion=setting.motion,
+        accuracy=setting.accuracy.as_dict(),
+        **({} if setting.solid is None else {"solid": setting.solid}),
+        result=result,
+        stats=stats_part(stats),
+    )
 
 
 def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:

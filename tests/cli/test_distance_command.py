@@ -188,3 +188,13 @@ def test_distance_of_a_file_to_itself(here, obbtree):
     (here / "one.obj").write_text(obj(cube((5, 5, 5))))
 
     assert obbtree("distance", "one.obj", "one.obj", "-q").out == "0.0\n"
+
+
+def test_distance_never_overwrites_an_input(here, obbtree):
+    before = (here / "cube.stl").read_bytes()
+
+    ended = obbtree("distance", "cube.stl", "touching.obj", "-o", "./cube.stl")
+
+    assert ended.code == 2
+    assert "is the input cube.stl, which would be lost" in ended.err
+    assert (here / "cube.stl").read_bytes() == before
