@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, get_args
@@ -107,8 +108,10 @@ class Growth:
     @property
     def possible_node_count(self) -> int:
         """How many boxes the whole tree has; while the center rule leaves that open, at most."""
-        if self._arrays is not None:
-            return len(self._arrays.nodes)
+        return self._possible if self._arrays is None else len(self._arrays.nodes)
+
+    @cached_property
+    def _possible(self) -> int:
         d = self.description
         return _possible_nodes(len(self.mesh.triangles), d.split, d.leaf_size, d.max_depth)
 

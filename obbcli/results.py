@@ -63,7 +63,8 @@ class QueryStats(NamedTuple):
     seconds: Mapping[str, float]
 
 
-class Collision(NamedTuple):
+@dataclass(frozen=True, init=False)
+class Collision:
     """Whether two bodies touch at any time asked about.
 
     Attributes:
@@ -84,6 +85,25 @@ class Collision(NamedTuple):
     error_bound: float
     stats: QueryStats
     contained: Inner | None = None
+
+    def __init__(
+        self,
+        status: Status,
+        witness: tuple[int, int] | None,
+        approximate: bool,
+        error_bound: float,
+        stats: QueryStats,
+        contained: Inner | None = None,
+    ) -> None:
+        # At once: what the dataclass would do field by field takes longer than many a question.
+        vars(self).update(
+            status=status,
+            witness=witness,
+            approximate=approximate,
+            error_bound=error_bound,
+            stats=stats,
+            contained=contained,
+        )
 
     @property
     def collides(self) -> bool:

@@ -60,15 +60,20 @@ struct Tree {
 // A tree as the object that Python knows, for those who keep it alive.
 using TreeObject = nb::typed<nb::object, Tree>;
 
-// So much of a query takes less time than to let other threads run meanwhile.
-inline constexpr std::uint64_t kBriefPops = 32;
 // Pops between two looks at clock and signals: a few milliseconds.
 inline constexpr std::uint64_t kPopsASlice = 16'384;
 
-// Takes at most so many pairs from a query's stack or queue; true when its answer is complete.
+// How much of a query takes less time than to let other threads run meanwhile. Nothing where trees
+// grow: a node near the root takes long to make.
+inline std::uint64_t brief_pops(const Tree& a, const Tree& b) {
+    return a.view.on_demand == nullptr && b.view.on_demand == nullptr ? 32 : 0;
+}
+
+// Takes at most so many pairs from a query's stack or queue, and lets other threads run after the
+// first few; true when its answer is complete.
 template <typename Query>
-inline bool advance(Query& query, std::uint64_t max_pops) {
-    const std::uint64_t brief = std::min(kBriefPops, max_pops);
+inline bool advance(Query& query, std::uint64_t brief, std::uint64_t max_pops) {
+    brief = std::min(brief, max_pops);
     if (query.advance(brief)) {
         return true;
     }
@@ -79,12 +84,12 @@ inline bool advance(Query& query, std::uint64_t max_pops) {
 // Advances a query to its end or to a limit, in pops or seconds; true when its answer is complete.
 // Throws what a signal's handler raised.
 template <typename Query>
-inline bool run(Query& query, std::uint64_t max_pops, double seconds) {
+inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, double seconds) {
     using Seconds = std::chrono::duration<double>;
     const auto start = std::chrono::steady_clock::now();
     for (;;) {
         const std::uint64_t slice = std::min(kPopsASlice, max_pops);
-        if (advance(query, slice)) {
+        if (advance(query, brief, slice)) {
             return true;
         }
         if (PyErr_CheckSignals() != 0) {

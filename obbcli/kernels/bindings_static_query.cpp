@@ -39,17 +39,20 @@ void init_pose(
 // query does.
 struct AtRest {
     nb::object a, b;
+    std::uint64_t brief;
     obb::StaticQuery query;
 };
 
 void init_query(AtRest* self, const TreeObject& a, const obb::Pose& pose_a, const TreeObject& b,
                 const obb::Pose& pose_b, bool boxes_for_leaves, std::uint32_t max_depth_a,
                 std::uint32_t max_depth_b) {
+    const Tree &tree_a = nb::cast<const Tree&>(a), &tree_b = nb::cast<const Tree&>(b);
     new (self) AtRest{a,
                       b,
-                      {nb::cast<const Tree&>(a).view,
+                      brief_pops(tree_a, tree_b),
+                      {tree_a.view,
                        pose_a,
-                       nb::cast<const Tree&>(b).view,
+                       tree_b.view,
                        pose_b,
                        {false, boxes_for_leaves, max_depth_a, max_depth_b}}};
 }
@@ -79,7 +82,7 @@ Collision collide(const Tree& a, const obb::Pose& pose_a, const Tree& b, const o
                   std::uint64_t max_pops, double seconds) {
     obb::StaticQuery query(a.view, pose_a, b.view, pose_b,
                            {false, boxes_for_leaves, max_depth_a, max_depth_b});
-    const bool is_complete = run(query, max_pops, seconds);
+    const bool is_complete = run(query, brief_pops(a, b), max_pops, seconds);
     return {is_complete, query.is_by_boxes(), query.error_bound(), witness_of(query),
             counts_of(query)};
 }
@@ -90,7 +93,8 @@ Owned<std::int64_t, -1, 2> triangle_pairs(const Tree& a, const obb::Pose& pose_a
     options.all_pairs = true;
     options.limit = limit;
     obb::StaticQuery query(a.view, pose_a, b.view, pose_b, options);
-    run(query, std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<double>::infinity());
+    run(query, brief_pops(a, b), std::numeric_limits<std::uint64_t>::max(),
+        std::numeric_limits<double>::infinity());
     return pairs_of(query);
 }
 
@@ -108,7 +112,9 @@ void bind_static_query(nb::module_& m) {
              "max_depth_a"_a, "max_depth_b"_a)
         .def(
             "advance",
-            [](AtRest& self, std::uint64_t max_pops) { return advance(self.query, max_pops); },
+            [](AtRest& self, std::uint64_t max_pops) {
+                return advance(self.query, self.brief, max_pops);
+            },
             "max_pops"_a)
         .def_prop_ro("is_contact", [](const AtRest& self) { return self.query.is_contact(); })
         .def_prop_ro("is_by_boxes", [](const AtRest& self) { return self.query.is_by_boxes(); })
