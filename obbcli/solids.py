@@ -27,9 +27,9 @@ Counts = tuple[int, int, int, int]
 class Containment:
     """The question whether a part of one body lies inside the other, their surfaces apart at t = 0.
 
-    Inside is where the surface winds about a point a number of times other than zero: in the
-    overlap of two closed parts too, whichever way they are turned, but not in a hollow whose
-    surface is turned inwards. Exact for the posed vertices.
+    Inside is where the surface winds about a point a number of times other than zero: whether all
+    of it is turned outwards or inwards, and also where parts overlap, but not in a hollow whose
+    surface is turned against the outer one. Exact for the posed vertices.
 
     One point of each connected part of either surface decides. A winding number changes only where
     a surface passes, so it is the same all over a part that does not touch the surface. For the
@@ -109,16 +109,9 @@ class Containment:
         inner, tree, outer, other = (
             (a, tree_a, b, tree_b) if self._inner == "a" else (b, tree_b, a, tree_a)
         )
-        points = inner.pose.apply(_point_of_each_part(tree.mesh))
+        mesh = tree.mesh
+        points = inner.pose.apply(mesh.vertices[mesh.triangles[mesh.part_rows, 0]])
         return points, kernels.ContainmentQuery(other.kernel, outer.pose.kernel, points)
-
-
-def _point_of_each_part(mesh: Mesh) -> NDArray[np.float64]:
-    """Return a vertex of each connected part of a surface, (P, 3)."""
-    corners = mesh.corner_ids
-    rows = kernels.first_triangles_of_parts(corners, int(corners.max()) + 1)
-    points: NDArray[np.float64] = mesh.vertices[mesh.triangles[rows, 0]]
-    return points
 
 
 def _require_watertight(mesh: Mesh, where: str) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from obbcli import kernels
 from obbcli.errors import MeshError
 from obbcli.mesh import measure, topology
 
@@ -102,6 +103,11 @@ class Mesh:
         position bound nothing and are left out; a surface of those alone is not watertight.
         """
         return topology.is_watertight(self.corner_ids)
+
+    @cached_property
+    def part_rows(self) -> NDArray[np.int64]:
+        """Return the first triangle of each connected part, (P,); parts share no position."""
+        return kernels.first_triangles_of_parts(self.corner_ids, int(self.corner_ids.max()) + 1)
 
     @cached_property
     def corner_ids(self) -> NDArray[np.int64]:
