@@ -134,9 +134,9 @@ class Motion:
         with np.errstate(over="ignore", invalid="ignore"):  # Pose refuses what comes of it
             shift = time * self.linear_velocity
             if not turns:
-                return Pose(start.rotation, start.translation + shift)
+                return Pose.carried(start.rotation, start.translation + shift)
             shift = shift + turn.shift_of(start.translation - middle)
-            return Pose(turn.matrix @ start.rotation, start.translation + shift)
+            return Pose.carried(turn.matrix @ start.rotation, start.translation + shift)
 
 
 class PathMotion(Motion):

@@ -46,6 +46,21 @@ class Pose:
         object.__setattr__(self, "rotation", _as_rotation(rotation))
         object.__setattr__(self, "translation", vector_or_zero(translation, "translation"))
 
+    @classmethod
+    def carried(cls, rotation: NDArray[np.float64], translation: NDArray[np.float64]) -> Pose:
+        """Return where a motion has carried a checked pose, of which no more is asked.
+
+        Turning leaves the size of `Q Q^T - I` as it is, but not its largest entry, which the check
+        looks at: a pose that just passed need not pass again.
+
+        Raises:
+            MotionError: not finite.
+        """
+        pose = cls.__new__(cls)
+        object.__setattr__(pose, "rotation", as_floats(rotation, (3, 3), "rotation", MotionError))
+        object.__setattr__(pose, "translation", as_vector(translation, "translation", MotionError))
+        return pose
+
     @property
     def is_identity(self) -> bool:
         """Return whether the pose moves nothing; such a pose rounds nothing either."""
