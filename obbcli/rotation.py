@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,8 +12,6 @@ from obbcli.arrays import as_vector
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from numpy.typing import ArrayLike, NDArray
 
 # Bits kept of an angle before it is split into two doubles: 53 each, and some to spare.
@@ -61,33 +60,43 @@ def turn_after(spin: NDArray[np.float64], time: float) -> Turn:
     Raises:
         MotionError: the angle exceeds the range of double.
     """
-    from fractions import Fraction  # heavy, and of no use to a question at rest
-
-    square = sum(Fraction(w) ** 2 for w in spin.tolist()) * Fraction(time) ** 2
-    if square == 0:
+    root, shift = _speed(tuple(spin.tolist()))
+    numerator, denominator = abs(time).as_integer_ratio()
+    angle = root * numerator
+    if angle == 0:
         return _NO_TURN
-    # The root of a rational in integers, shifted so that it has enough bits.
-    shift = _ANGLE_BITS - (square.numerator.bit_length() - square.denominator.bit_length()) // 2
-    root = _shifted(square, 2 * shift)
-    angle = Fraction(math.isqrt(root)) / Fraction(2) ** shift
+    unit = denominator << shift
     try:
-        high = float(angle)
+        high = angle / unit  # of integers: rounded once
     except OverflowError as fault:
         raise MotionError("time", "turns by more than a double can hold", "shorten it") from fault
-    low = float(angle - Fraction(high))
-    # By a power of two first, or the slowest spins lose their direction.
-    unit = np.ldexp(spin, -math.frexp(float(np.abs(spin).max()))[1])
-    axis = unit / math.copysign(math.hypot(*unit.tolist()), time)
+    whole, part = high.as_integer_ratio()
+    low = (angle * part - whole * unit) / (unit * part)
+    axis = math.copysign(1.0, time) * axis_of(spin)
     cosine, sine = _cosine_sine(high, low)
     half = _cosine_sine(0.5 * high, 0.5 * low)[1]
     return Turn(axis, cosine, sine, 2.0 * half * half)
 
 
-def _shifted(value: Fraction, bits: int) -> int:
-    """Return the whole part of a positive value times 2^bits."""
-    if bits >= 0:
-        return (value.numerator << bits) // value.denominator
-    return value.numerator // (value.denominator << -bits)
+def axis_of(spin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the unit axis W / |W| of a spin other than 0, (3,)."""
+    # By a power of two first, or the slowest spins lose their direction.
+    unit = np.ldexp(spin, -math.frexp(float(np.abs(spin).max()))[1])
+    axis: NDArray[np.float64] = unit / math.hypot(*unit.tolist())
+    return axis
+
+
+@lru_cache(maxsize=64)
+def _speed(spin: tuple[float, float, float]) -> tuple[int, int]:
+    """Return |W| as a whole number and by how many bits it is too large, rounded down.
+
+    The root of a sum of squares in integers, shifted so that it has enough bits.
+    """
+    ratios = [w.as_integer_ratio() for w in spin]
+    bits = max(denominator.bit_length() - 1 for _, denominator in ratios)
+    square = sum(((n << bits) // d) ** 2 for n, d in ratios)
+    more = max(_ANGLE_BITS - square.bit_length() // 2, 0)
+    return math.isqrt(square << 2 * more), bits + more
 
 
 def _cosine_sine(high: float, low: float) -> tuple[float, float]:
