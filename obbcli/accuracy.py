@@ -35,9 +35,12 @@ class Accuracy:
         max_depth_b: the same for B.
         leaves: `"triangles"`, or `"boxes"`: a leaf of several triangles stands for its box (the
             coarse leaves of Eberly 2008 §6).
-        method: `"certified"`, or `"sampled"`: the stepping of Eberly 2008 §5, which proves nothing.
-        integrator: how `"sampled"` turns a frame: `"exact"`, `"euler"` or `"rk4"`.
-        steps: how many steps `"sampled"` divides the duration into.
+        method: `"certified"`, or `"sampled"`: the stepping of Eberly 2008 §5, in which bodies keep
+            their orientation during a step and jump to the next. It proves nothing but by how much
+            its paths are off (`error_bound`); what touches only between may be missed.
+        integrator: how `"sampled"` turns a frame from step to step: `"exact"`, in closed form;
+            `"euler"` or `"rk4"`, by the differential equation, orthonormalized after each step.
+        steps: how many equal steps `"sampled"` divides the duration into.
         clearance: mesh units; surfaces this close or closer count as contact.
         max_iterations: queue pops before the answer is `unresolved`.
         timeout: s of wall time before the answer is `unresolved`. None: no limit.

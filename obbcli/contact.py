@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.errors import MotionError
 from obbcli.legs import LegQueries, legs_of
 from obbcli.motion import PathMotion, as_body
 from obbcli.question import (
@@ -28,12 +27,13 @@ from obbcli.question import (
 )
 from obbcli.relay import sum_of
 from obbcli.results import Contact, FirstContact, QueryStats, Status
+from obbcli.sampled import SampledQueries
 from obbcli.solids import Containment
 from obbcli.touching import boxes_at_start, contact_at_start, contact_of, unresolved
 
 if TYPE_CHECKING:
     from obbcli.motion import Body, Shape
-    from obbcli.relay import Counts
+    from obbcli.relay import Asker, Counts, Relay
 
 _EXACT = Accuracy()
 
@@ -41,7 +41,8 @@ _EXACT = Accuracy()
 class Query:
     """A first-contact question that can be advanced, looked at and advanced again.
 
-    At any moment `lower_bound` is proven: no contact before it.
+    At any moment `lower_bound` is proven: no contact before it. The sampled method proves nothing
+    of the kind, so that there it stays 0.
 
     Motions through poses are asked about from one break time of either body to the next, with the
     bodies posed anew at each, rounded; what that is off their continuous paths (some 1e-14 of the
@@ -59,8 +60,8 @@ class Query:
         any_contact: whether any proof of contact will do, not of the first.
 
     Raises:
-        MotionError: the duration is negative or not finite, a sampled method is asked for (not
-            answered by this version), or positions leave the range of double.
+        MotionError: the duration is negative or not finite, positions leave the range of double,
+            or sampled steps turn by more than their integrator can follow.
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
@@ -79,10 +80,6 @@ class Query:
         self._accuracy = _EXACT if accuracy is None else accuracy
         self._bodies = as_body(a), as_body(b)
         self._duration = duration_of(duration, self._bodies)
-        if self._accuracy.method == "sampled":
-            raise MotionError(
-                "method='sampled'", "is not answered by this version", "use the certified method"
-            )
         self._seconds = {"load": 0.0, "query": 0.0}
         start = time.perf_counter()
         self._trees = trees_of(self._bodies)
@@ -93,14 +90,22 @@ class Query:
         self._solids = Containment(placed, self._trees, self._at_start) if solid else None
         self._seconds["query"] = time.perf_counter() - start
         self._moving: kernels.ContactQuery | None = None
-        self._legs: LegQueries | None = None
-        if any(isinstance(body.motion, PathMotion) for body in self._bodies):
-            # A bracket may consist of two: of the time the bodies are near, and of contact.
-            exact = replace(self._accuracy, time_tolerance=0.5 * self._time_tolerance())
-            ask = partial(Query, any_contact=any_contact)
-            self._legs = LegQueries(self._bodies, self._trees, self._duration, exact, ask)
+        self._legs = self._relay(partial(Query, any_contact=any_contact))
         self._any_contact = any_contact
         self._is_finished = False
+
+    def _relay(self, ask: Asker) -> Relay | None:
+        """Return what asks one question after another, where one is not enough."""
+        bodies, end = self._bodies, self._duration
+        moves = end > 0 and not all(body.motion.is_at_rest for body in bodies)
+        if self._accuracy.method == "sampled" and moves:
+            accuracy = replace(self._accuracy, time_tolerance=self._time_tolerance())
+            return SampledQueries(bodies, self._trees, end, accuracy, ask)
+        if not any(isinstance(body.motion, PathMotion) for body in bodies):
+            return None
+        # A bracket may consist of two: of the time the bodies are near, and of contact.
+        exact = replace(self._accuracy, time_tolerance=0.5 * self._time_tolerance())
+        return LegQueries(bodies, self._trees, end, exact, ask)
 
     @property
     def is_finished(self) -> bool:
@@ -113,6 +118,11 @@ class Query:
         if self._legs is not None:
             return self._legs.lower_bound
         return 0.0 if self._moving is None else self._moving.lower_bound
+
+    @property
+    def time(self) -> float:
+        """Up to when the question has come, s: `lower_bound`, or the present sampled step."""
+        return self.lower_bound if self._legs is None else self._legs.time
 
     @property
     def duration(self) -> float:
@@ -133,7 +143,8 @@ class Query:
             seconds: wall time. None: no limit.
 
         Raises:
-            MotionError: positions leave the range of double.
+            MotionError: positions leave the range of double, or sampled steps turn by more than
+                their integrator can follow.
             TreeFileError: a tree file is damaged.
         """
         start = time.perf_counter()
@@ -231,7 +242,8 @@ def first_contact(
 
     SEPARATED is proof; no contact exists before `time_bounds[0]`, in floating point with every
     rounding counted, whatever the number of turns. Without rotation the time is exact: the bracket
-    is the doubles around a rational number.
+    is the doubles around a rational number. All that is said by the sampled method (`Accuracy`)
+    holds for paths that are off the true ones by up to `error_bound`, but for contact at t = 0.
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
@@ -242,8 +254,8 @@ def first_contact(
             surfaces then hold what is inside them.
 
     Raises:
-        MotionError: the duration is negative or not finite, a sampled method is asked for (not
-            answered by this version), or positions leave the range of double.
+        MotionError: the duration is negative or not finite, positions leave the range of double,
+            or sampled steps turn by more than their integrator can follow.
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.

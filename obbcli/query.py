@@ -46,7 +46,8 @@ def collide(
     to double as `Pose` says; boxes only rule out what cannot touch, with every rounding counted.
     With depth limits or coarse leaves (`Accuracy`) boxes stand for what they hold: `separated` is
     a proof all the same, contact is `approximate`, and `error_bound` bounds the gap. A moving
-    question ends at any proof of contact, which is cheaper than the first.
+    question ends at any proof of contact, which is cheaper than the first. Asked by the sampled
+    method (`Accuracy`), all but contact at t = 0 is `approximate`, `separated` too.
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
@@ -57,8 +58,8 @@ def collide(
             surfaces then hold what is inside them.
 
     Raises:
-        MotionError: a sampled method is asked for (not answered by this version), the duration is
-            negative or not finite, or positions leave the range of double.
+        MotionError: the duration is negative or not finite, positions leave the range of double, or
+            sampled steps turn by more than their integrator can follow.
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
@@ -66,7 +67,7 @@ def collide(
     accuracy = _EXACT if accuracy is None else accuracy
     bodies = as_body(a), as_body(b)
     is_at_rest = duration_of(duration, bodies) == 0 and accuracy.clearance == 0
-    if solid or not is_at_rest or accuracy.method == "sampled":
+    if solid or not is_at_rest:
         return _collide_moving(bodies, duration, accuracy, solid)
     start = perf_counter()
     trees = trees_of(bodies)

@@ -77,6 +77,11 @@ class Relay(ABC):
     def lower_bound(self) -> float:
         """No contact in [0, lower_bound): proven. s."""
 
+    @property
+    def time(self) -> float:
+        """Up to when the question has come, s."""
+        return self.lower_bound
+
     @abstractmethod
     def _conclude(self, found: FirstContact) -> FirstContact | None:
         """Return the answer after that of the present question, or go on to the next one."""

@@ -68,12 +68,14 @@ class Collision:
     """Whether two bodies touch at any time asked about.
 
     Attributes:
-        status: how the question ended. `Status.SEPARATED` is a proof.
+        status: how the question ended. `Status.SEPARATED` is a proof unless `approximate`.
         witness: the ids of a triangle of A and one of B that meet; None where nothing meets or
             where boxes stand for their triangles.
-        approximate: whether boxes stood for triangles, so that contact is not proven.
-        error_bound: mesh units; how far apart the surfaces can be although contact is said. 0
-            where exact.
+        approximate: whether boxes stood for triangles, so that contact is not proven, or the motion
+            was sampled, so that nothing is.
+        error_bound: mesh units; how far apart the surfaces can be although contact is said; of a
+            sampled answer also by how much any point's path relative to the other body was off the
+            true one. 0 where exact.
         stats: what the question cost.
         contained: of solids that do not touch, `"a"` where A or a connected part of it lies inside
             B, else `"b"` where B or a part of it lies inside A. None elsewhere.
@@ -122,12 +124,15 @@ class Contact:
     Fields that do not apply are None.
 
     Attributes:
-        status: how the question ended. `Status.SEPARATED` is a proof for the whole closed interval.
+        status: how the question ended. `Status.SEPARATED` is a proof for the whole closed interval,
+            unless `approximate`.
         time: s; no contact before it, proven: the lower end of `time_bounds`. None where separated.
         time_bounds: s; (lo, hi): no contact before lo, contact at hi as `evidence` says. hi is None
             where boxes met or nothing is known beyond lo.
         evidence: `"intersecting"`: triangles proven to meet at hi; `"within_tolerance"`: points of
-            both proven closer than `distance` at hi; `"boxes"`: boxes that stand for triangles met.
+            both proven closer than `distance` at hi; `"boxes"`: boxes that stand for triangles met;
+            `"sampled"`: time, bounds and place are those of the sampled paths, and nothing is
+            proven but `error_bound`.
         point: world coordinates at `time`, midway between `point_a` and `point_b`; of a body inside
             the other, one of its vertices.
         point_a: the nearest point of A.
@@ -142,9 +147,11 @@ class Contact:
         contained: of solids that do not touch at t = 0, `"a"` where A or a connected part of it
             lies inside B, else `"b"` where B or a part of it lies inside A. None elsewhere. It is
             its own proof: as no surfaces meet, evidence, triangles and distance are None.
-        approximate: whether boxes stood for triangles, so that contact is not proven.
-        error_bound: mesh units; how far apart the surfaces can be although contact is said. 0 where
-            exact.
+        approximate: whether boxes stood for triangles, so that contact is not proven, or the motion
+            was sampled, so that nothing is.
+        error_bound: mesh units; how far apart the surfaces can be although contact is said; of a
+            sampled answer also by how much any point's path relative to the other body was off the
+            true one, up to the contact. 0 where exact.
     """
 
     status: Status

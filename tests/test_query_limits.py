@@ -296,7 +296,6 @@ def test_pair_limit_beyond_64_bits_is_no_limit() -> None:
 @pytest.mark.parametrize(
     ("where", "question"),
     [
-        ("method='sampled'", {"accuracy": Accuracy(method="sampled")}),
         ("duration", {"duration": -1.0}),
         ("duration", {"duration": float("nan")}),
         ("duration", {"duration": float("inf")}),

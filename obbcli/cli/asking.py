@@ -110,6 +110,10 @@ def about_two(exit_code: str) -> Decorator:
     )
 
 
+# s between two looks at the clock, where steps of few pops take the time.
+_LOOK = 0.1
+
+
 def refuse_unanswered(asked: Iterable[tuple[str, Any, str]]) -> None:
     """Refuse what this version cannot answer: to ignore it would make the answer a lie.
 
@@ -140,17 +144,22 @@ def run(query: Query, accuracy: Accuracy, *, progress: bool) -> FirstContact:
     left = accuracy.max_iterations
     stop = None if accuracy.timeout is None else time.perf_counter() + accuracy.timeout
     try:
-        with proving(query.duration, wanted=progress) as show:
+        with proving(query.duration, _shown(accuracy), wanted=progress) as show:
             while True:
                 # The slices of `Query.advance` itself: a bar changes no answer.
-                answer = query.advance(min(left, POPS_A_SLICE))
-                left -= POPS_A_SLICE
+                answer = query.advance(min(left, POPS_A_SLICE), _LOOK)
+                left = accuracy.max_iterations - answer.stats.pops
                 is_late = stop is not None and time.perf_counter() >= stop
                 if query.is_finished or left <= 0 or is_late:
                     return answer
-                show(query.lower_bound)
+                show(query.time)
     except KeyboardInterrupt as fault:
         raise CancelledError("", "interrupted", _proven(query)) from fault
+
+
+def _shown(accuracy: Accuracy) -> str:
+    """Return what the time that a question has come to is the end of."""
+    return "sampled until" if accuracy.method == "sampled" else "no contact before"
 
 
 def _proven(query: Query) -> str:
@@ -177,8 +186,12 @@ def with_load_time(record: Record, files: Iterable[Input]) -> Record:
     return record
 
 
-def exit_code(status: str, *, asked: bool) -> int:
-    """Return the exit code of an answer; `asked` is whether contact has one of its own."""
-    if status == "unresolved":
+def exit_code(result: Record, *, asked: bool) -> int:
+    """Return the exit code of an answer; `asked` is whether contact has one of its own.
+
+    Who asks takes 0 for proof, which samples do not give.
+    """
+    is_separated = result["status"] == "separated"
+    if result["status"] == "unresolved" or (asked and is_separated and result["approximate"]):
         return ExitCode.UNRESOLVED
-    return ExitCode.CONTACT if asked and status != "separated" else ExitCode.ANSWERED
+    return ExitCode.CONTACT if asked and not is_separated else ExitCode.ANSWERED

@@ -11,7 +11,6 @@ from obbcli.cli.asking import (
     about_two,
     exit_code,
     naming_options,
-    refuse_unanswered,
     run,
     with_load_time,
 )
@@ -54,7 +53,7 @@ Examples:
     help="List at most N pairs (with --all-pairs).",
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
-@about_two("Exit with 1 where they touch, 0 where they are proven apart.")
+@about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
 def command(asked: Asked, **flags: Any) -> int:
     """Do A and B touch, at rest or at any time of a motion? Touching counts; the answer is exact.
 
@@ -63,14 +62,11 @@ def command(asked: Asked, **flags: Any) -> int:
     """
     question = asked.question()
     _refuse_contradictions(question, asked.accuracy, flags)
-    refuse_unanswered(
-        (("--method sampled", question.accuracy.method == "sampled", "leave it out"),)
-    )
     files = asked.read()
     with naming_options(question):
         record = _ask(asked, question, files, flags)
     _show(record, asked.common)
-    return exit_code(record["result"]["status"], asked=asked.exit_code)
+    return exit_code(record["result"], asked=asked.exit_code)
 
 
 def _refuse_contradictions(

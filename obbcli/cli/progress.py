@@ -45,11 +45,12 @@ def bar(
 
 
 @contextmanager
-def proving(duration: float, *, wanted: bool) -> Iterator[Callable[[float], None]]:
+def proving(duration: float, what: str, *, wanted: bool) -> Iterator[Callable[[float], None]]:
     """Give what shows up to when separation is proven, drawn once the body has run for a second.
 
     Args:
         duration: s, what is asked about.
+        what: what is so up to the time shown, such as "no contact before".
         wanted: False draws nothing.
 
     Yields:
@@ -67,7 +68,7 @@ def proving(duration: float, *, wanted: bool) -> Iterator[Callable[[float], None
                 bars.append(stack.enter_context(_progress()))
                 bars[0].add_task("", total=duration)
                 bars[0].tasks[0].start_time = due - PATIENCE
-            text = f"no contact before t = {proven:.6g} of {duration:g} s"
+            text = f"{what} t = {proven:.6g} of {duration:g} s"
             bars[0].update(bars[0].task_ids[0], description=text, completed=proven)
 
         yield show

@@ -265,7 +265,7 @@ class Question(NamedTuple):
             UsageError: a number is refused, or an option has no meaning with the others.
         """
         motions = motion.motions(degrees=pose.degrees)
-        given = {"pose": _names(pose), "motion": _names(motion)}
+        given = {"pose": _names(pose), "motion": _names(motion), "steps": ["--steps"]}
         return cls(pose.poses(), motions, motion.duration, accuracy.accuracy(), given)
 
     @property

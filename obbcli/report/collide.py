@@ -57,7 +57,7 @@ def collide_tables(record: Record) -> list[Table]:
     rows = [
         *source_rows(record),
         ("status", result["status"]),
-        ("answer", _SENTENCES[result["status"]].format(why_open(record)) + _reservation(result)),
+        ("answer", _SENTENCES[result["status"]].format(why_open(record)) + _reservation(record)),
         *contained_rows(result),
     ]
     if result["witness"] is not None:
@@ -117,10 +117,23 @@ def cost_rows(stats: Record) -> list[tuple[str, str]]:
     ]
 
 
-def _reservation(result: Record) -> str:
+def as_sampled(result: Record, *, by_boxes: bool) -> str:
+    """Return what a sampled answer leaves open."""
+    bound = length(result["error_bound"])
+    if by_boxes:
+        return f" of boxes as sampled: the surfaces are at most {bound} apart"
+    off = f"paths at most {bound} off the true ones" if result["error_bound"] else "the true paths"
+    return f" as sampled, on {off}"
+
+
+def _reservation(record: Record) -> str:
     """Return what an approximate answer leaves open."""
-    if not result["approximate"] or result["status"] == "separated":
+    result = record["result"]
+    is_separated = result["status"] == "separated"
+    if not result["approximate"]:
         return ""
+    if record["accuracy"]["method"] == "sampled" and result["status"] != "overlap_at_start":
+        return as_sampled(result, by_boxes=result["witness"] is None and not is_separated)
     return f" of boxes: the surfaces are at most {length(result['error_bound'])} apart"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.report.collide import contained_rows, cost_rows, source_rows, why_open
+from obbcli.report.collide import as_sampled, contained_rows, cost_rows, source_rows, why_open
 from obbcli.report.record import answer_document
 from obbcli.report.table import Table, length, point
 
@@ -62,11 +62,14 @@ def _sentence(record: Record) -> str:
     result = record["result"]
     time = result["time"]
     if result["status"] == "separated":
-        return "no contact in the whole duration"
+        sampled = as_sampled(result, by_boxes=False) if result["approximate"] else ""
+        return f"no contact in the whole duration{sampled}"
     if result["status"] == "unresolved":
         return f"{why_open(record)}; no contact before t = {time!r} s"
     if not result["approximate"]:
         return "in contact at t = 0" if time == 0 else f"first contact at t = {time!r} s"
+    if result["evidence"] == "sampled":
+        return f"contact at t = {time!r} s{as_sampled(result, by_boxes=result['feature'] == 'box')}"
     bound = f"the surfaces are at most {length(result['error_bound'])} apart"
     if time == 0:
         return f"in contact at t = 0 of boxes: {bound}"
@@ -76,7 +79,7 @@ def _sentence(record: Record) -> str:
 def _bracket(result: Record) -> list[tuple[str, str]]:
     """Return what is proven of the time, where it has two ends."""
     low, high = result["time_bounds"] or (None, None)
-    if high is None or high == 0:
+    if high is None or high == 0 or result["evidence"] == "sampled":
         return []
     at_high = _AT_HI[result["evidence"]].format(length(result["distance"]))
     if low == high:

@@ -9,22 +9,6 @@ import pytest
 from obbcli import Accuracy
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("--method", "sampled"),
-        ("--method", "sampled", "--steps", "10", "--integrator", "rk4"),
-        ("--vel", "1", "0", "0", "--method", "sampled"),
-    ],
-)
-def test_collide_never_ignores_what_it_cannot_answer_yet(here, obbtree, words):
-    ended = obbtree("collide", "cube.stl", "touching.obj", *words)
-
-    assert ended.code == 2
-    assert ended.out == ""
-    assert "not answered by version" in ended.err
-
-
 def test_collide_answers_a_moving_body_at_its_start(here, obbtree):
     ended = obbtree("collide", "cube.stl", "touching.obj", "--vel", 1, 0, 0, "--duration", 0,
                     "--json")  # fmt: skip

@@ -186,8 +186,6 @@ def test_first_contact_table_says_what_is_proven(here, obbtree, other, words, te
         ("--all-contacts",),
         ("--all-contacts", "--limit", "3"),
         ("--limit", "3"),
-        ("--method", "sampled"),
-        ("--method", "sampled", "--steps", "10", "--integrator", "rk4"),
     ],
 )
 def test_first_contact_never_ignores_what_it_cannot_answer_yet(here, obbtree, words):
