@@ -21,15 +21,21 @@ if TYPE_CHECKING:
 _FITS = {
     "triangles": kernels.Fit.TRIANGLES,
     "points": kernels.Fit.POINTS,
+    "hull": kernels.Fit.HULL,
+    "min-volume": kernels.Fit.MIN_VOLUME,
     "axis-aligned": kernels.Fit.AXIS_ALIGNED,
 }
 _SPLITS = {"median": kernels.Split.MEDIAN, "center": kernels.Split.CENTER}
 _NO_LIMIT = 2**32 - 1
 
+_HULL_FITS = ("hull", "min-volume")
 # A slice of a build between two looks at signals and progress: tens of milliseconds.
 _TRIANGLES_A_SLICE = 200_000
+_HULL_TRIANGLES_A_SLICE = 10_000
 # What a build holds at its peak: the moving triangles, keys and boxes; then the arrays of the tree.
 _BUILD_BYTES_A_TRIANGLE = 200
+# The corners of all triangles, as they are and on the hull's grid.
+_HULL_BYTES_A_TRIANGLE = 200
 
 
 class Growth:
@@ -54,7 +60,7 @@ class Growth:
         max_memory: int | None,
     ) -> None:
         _check_options(fit, split, leaf_size, max_depth)
-        _check_memory(mesh, max_memory)
+        _check_memory(mesh, fit, max_memory)
         self.mesh = mesh
         self.description = Description(
             fit=fit,
@@ -86,7 +92,9 @@ class Growth:
         with self._lock:
             if self._arrays is not None:
                 return self._arrays
-            while not self._builder.advance(_TRIANGLES_A_SLICE):
+            by_hull = self.description.fit in _HULL_FITS
+            work = _HULL_TRIANGLES_A_SLICE if by_hull else _TRIANGLES_A_SLICE
+            while not self._builder.advance(work):
                 if progress is not None:
                     progress(self._builder.progress())
             nodes, corners, triangle_ids = self._builder.arrays()
@@ -154,8 +162,9 @@ def _check_options(fit: str, split: str, leaf_size: int, max_depth: int | None) 
         raise MeshError("max_depth", f"is {max_depth!r}", "use a whole number of at least 0")
 
 
-def _check_memory(mesh: Mesh, max_memory: int | None) -> None:
-    needed = _BUILD_BYTES_A_TRIANGLE * len(mesh.triangles) + mesh.vertices.nbytes
+def _check_memory(mesh: Mesh, fit: str, max_memory: int | None) -> None:
+    each = _BUILD_BYTES_A_TRIANGLE + (_HULL_BYTES_A_TRIANGLE if fit in _HULL_FITS else 0)
+    needed = each * len(mesh.triangles) + mesh.vertices.nbytes
     if max_memory is not None and needed > max_memory:
         raise MeshError(
             mesh.source or "mesh",

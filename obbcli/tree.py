@@ -83,8 +83,9 @@ class ObbTree:
         Args:
             mesh_or_path: the mesh, or the file to load it from.
             fit: orients a box by the spread of its triangles' area (`"triangles"`, §6.1.3 with its
-                weights mended), of their corners (`"points"`, §6.1.2), or not at all
-                (`"axis-aligned"`).
+                weights mended), of their corners (`"points"`, §6.1.2), of their convex hull's area
+                (`"hull"`), for the least volume (`"min-volume"`, §6.1.1: nearly; slow to build), or
+                not at all (`"axis-aligned"`).
             split: parts a node across its longest axis at the median of the triangles' centroids,
                 or at the box's center, trying the next longest axes and at last the median (§6.2).
             leaf_size: a node of so many triangles is not split.

@@ -31,7 +31,7 @@ VERSION = 1
 BLOCK_BYTES = 4096
 ALIGNMENT = 64
 
-Fit = Literal["triangles", "points", "axis-aligned"]
+Fit = Literal["triangles", "points", "hull", "min-volume", "axis-aligned"]
 Split = Literal["median", "center"]
 
 # magic, version, header bytes, header CRC, block bytes, file bytes, boxes, triangles, vertices,

@@ -17,7 +17,7 @@ from oracles_mesh import posed
 import obbcli
 from obbcli import Accuracy, Body, Mesh, ObbTree, Pose, Status
 
-FITS = ("triangles", "points", "axis-aligned")
+FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 COARSE = (
     Accuracy(),
     Accuracy(max_depth_a=0, max_depth_b=0),
@@ -68,7 +68,7 @@ def _rotation(random: Any) -> Any:
 def touch(a: Any, pose_a: Pose, b: Any, pose_b: Pose, random: Any) -> None:
     """Ask in every coarseness, either way round, whether surfaces that touch are said to."""
     options = [
-        {"fit": FITS[random.integers(3)], "leaf_size": int(random.integers(1, 4))} for _ in range(2)
+        {"fit": FITS[random.integers(5)], "leaf_size": int(random.integers(1, 4))} for _ in range(2)
     ]
     body_a = Body(ObbTree.build(Mesh(a, _faces(a)), **options[0]), pose_a)
     body_b = Body(ObbTree.build(Mesh(b, _faces(b)), **options[1]), pose_b)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from obbcli.treefile import TreeArrays
 
-FITS = ("triangles", "points", "axis-aligned")
+FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center")
 SHIFTS = [(0.0, 0.0, 0.0), (0.3, -0.2, 0.1), (1.9, 0.4, 0.3), (2.5, 2.5, 2.5), (40.0, 0.0, 0.0)]
 

@@ -111,7 +111,7 @@ def _root_box(tree: ObbTree) -> Box:
     return Box(node["center"] * unit, tree_oracles.axes_of(node["rotation"]), halves)
 
 
-@pytest.mark.parametrize("fit", ["triangles", "points", "axis-aligned"])
+@pytest.mark.parametrize("fit", ["triangles", "points", "hull", "min-volume", "axis-aligned"])
 def test_depth_0_compares_the_root_boxes(fit: Any) -> None:
     roots = Accuracy(max_depth_a=0, max_depth_b=0)
     said = []

@@ -24,7 +24,7 @@ from obbcli import Body, Mesh, ObbTree, Pose, Status
 if TYPE_CHECKING:
     from pathlib import Path
 
-FITS = ("triangles", "points", "axis-aligned")
+FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center")
 UNTURNED = (np.eye(3), np.zeros(3))
 

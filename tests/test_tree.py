@@ -23,7 +23,7 @@ from obbcli import Mesh, MeshError, ObbTree
 if TYPE_CHECKING:
     from pathlib import Path
 
-FITS = ("triangles", "points", "axis-aligned")
+FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center")
 LEAF_SIZES = (1, 2, 3, 7, 64)
 DEPTHS = (None, 0, 1, 4)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from obbcli.report.build import Built
 
 SUFFIX = ".obbt"
-FITS = ("triangles", "points", "axis-aligned")
+FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center")
 _UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
@@ -62,7 +62,8 @@ build_options = gathered(
             type=click.Choice(FITS),
             default=FITS[0],
             show_default=True,
-            help="Orient boxes by the triangles' areas, by their corners, or not at all.",
+            help="Orient boxes by the triangles' areas, by their corners, by their hull's area, "
+            "for the least volume, or not at all.",
         ),
         option(
             _TREE,

@@ -18,7 +18,11 @@ class Fit(enum.Enum):
 
     POINTS = 1
 
-    AXIS_ALIGNED = 2
+    HULL = 2
+
+    MIN_VOLUME = 3
+
+    AXIS_ALIGNED = 4
 
 class Split(enum.Enum):
     MEDIAN = 0

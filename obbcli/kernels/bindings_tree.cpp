@@ -94,6 +94,8 @@ void bind_tree(nb::module_& m) {
     nb::enum_<obb::Fit>(m, "Fit")
         .value("TRIANGLES", obb::Fit::kTriangles)
         .value("POINTS", obb::Fit::kPoints)
+        .value("HULL", obb::Fit::kHull)
+        .value("MIN_VOLUME", obb::Fit::kMinVolume)
         .value("AXIS_ALIGNED", obb::Fit::kAxisAligned);
     nb::enum_<obb::Split>(m, "Split")
         .value("MEDIAN", obb::Split::kMedian)

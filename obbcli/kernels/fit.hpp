@@ -8,7 +8,12 @@
 
 namespace obb {
 
-enum class Fit { kTriangles, kPoints, kAxisAligned };
+enum class Fit { kTriangles, kPoints, kHull, kMinVolume, kAxisAligned };
+
+// Whether boxes are oriented by sums over their triangles; else by the hull, or not at all.
+[[nodiscard]] constexpr bool fits_by_moments(Fit fit) {
+    return fit == Fit::kTriangles || fit == Fit::kPoints;
+}
 
 // Sums over triangles from which mean and covariance follow; taken about a reference point near
 // them, or the differences would cancel.

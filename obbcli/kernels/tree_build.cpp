@@ -1,5 +1,6 @@
 #include "tree_build.hpp"
 
+#include "fit_hull.hpp"
 #include "scale.hpp"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ TreeBuilder::TreeBuilder(std::span<const Vec3> vertices, std::span<const Corners
                   }};
     const NodeRef root{0, count, 0, 0};
     const Vec3 reference = items_[0].corners[0];
-    add_node(root, moments_of(all, reference), reference);
+    fit_box(all, moments_of(all, reference), reference, nodes_[0]);
+    add_node(root);
     pending_.push_back(root);
     forget_items();
 }
@@ -147,18 +149,23 @@ void TreeBuilder::split_node(const NodeRef& ref) {
     const std::array<NodeRef, 2> children{{{ref.begin, split, ref.slot + 1, ref.depth + 1},
                                            {split, ref.end, node.right, ref.depth + 1}}};
     for (std::size_t side = 0; side < 2; ++side) {
-        if (children[side].is_triangle()) {
-            settle({children[side].begin, children[side].end});
+        if (!children[side].is_triangle()) {
+            const Range range{children[side].begin, children[side].end};
+            fit_box(range, moments[side], node.center, nodes_[children[side].slot]);
+        }
+    }
+    for (const NodeRef& child : children) { // counted once, also where memory ended before
+        if (child.is_triangle()) {
+            settle({child.begin, child.end});
         } else {
-            add_node(children[side], moments[side], node.center);
+            add_node(child);
         }
     }
 }
 
-void TreeBuilder::add_node(const NodeRef& ref, const Moments& moments, Vec3 reference) {
+void TreeBuilder::add_node(const NodeRef& ref) {
     const Range range{ref.begin, ref.end};
     Node& node = nodes_[ref.slot];
-    fit_box(range, moments, reference, node);
     if (is_leaf(ref)) {
         settle(range);
         __atomic_store_n(&ready_[ref.slot], std::uint8_t{1}, __ATOMIC_RELEASE);
@@ -219,7 +226,7 @@ TreeBuilder::Threshold TreeBuilder::median_threshold(Range range) {
 
 std::uint32_t TreeBuilder::partition_at(Range range, const Threshold& threshold, Vec3 reference,
                                         std::array<Moments, 2>& moments) {
-    const bool needs_moments = options_.fit != Fit::kAxisAligned;
+    const bool needs_moments = fits_by_moments(options_.fit);
     const auto is_left = [&](std::uint32_t i) {
         return threshold.is_above(keys_[i], items_[i].id);
     };
@@ -246,12 +253,21 @@ std::uint32_t TreeBuilder::partition_at(Range range, const Threshold& threshold,
 
 Moments TreeBuilder::moments_of(Range range, Vec3 reference) const {
     Moments moments;
-    if (options_.fit != Fit::kAxisAligned) {
+    if (fits_by_moments(options_.fit)) {
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
             moments.add(relative_to(items_[i].corners, reference), options_.fit);
         }
     }
     return moments;
+}
+
+std::vector<Vec3> TreeBuilder::corners_of(Range range) const {
+    std::vector<Vec3> points;
+    points.reserve(3 * static_cast<std::size_t>(range.size()));
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        points.insert(points.end(), items_[i].corners.begin(), items_[i].corners.end());
+    }
+    return points;
 }
 
 // The smallest box of the given orientation. Its half extents are those of the exact coordinates
@@ -264,14 +280,19 @@ void TreeBuilder::fit_box(Range range, const Moments& moments, Vec3 reference, N
 
     Moments by_corners;
     const Moments* chosen = &moments;
-    if (options_.fit != Fit::kAxisAligned && moments.is_empty()) { // no area: points or segments
+    if (fits_by_moments(options_.fit) && moments.is_empty()) { // no area: points or segments
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
             by_corners.add_corners(relative_to(items_[i].corners, reference));
         }
         chosen = &by_corners;
     }
-    node.rotation = chosen->is_empty() ? std::array<float, 4>{1, 0, 0, 0}
-                                       : quaternion_of(chosen->principal_axes());
+    if (options_.fit == Fit::kHull || options_.fit == Fit::kMinVolume) {
+        const bool is_root = range.size() == items_.size();
+        node.rotation = hull_rotation(corners_of(range), options_.fit, is_root);
+    } else {
+        node.rotation = chosen->is_empty() ? std::array<float, 4>{1, 0, 0, 0}
+                                           : quaternion_of(chosen->principal_axes());
+    }
 
     const auto axes = axes_of(node.rotation);
     const Vec3 origin = items_[range.begin].corners[0];

@@ -86,7 +86,7 @@ class TreeBuilder {
     [[nodiscard]] bool is_ready(std::uint32_t slot) const { return on_demand_.is_ready(slot); }
     void prepare(const NodeRef& ref);
     void split_node(const NodeRef& ref);
-    void add_node(const NodeRef& ref, const Moments& moments, Vec3 reference);
+    void add_node(const NodeRef& ref);
     void settle(Range range);
     void forget_items();
     [[nodiscard]] std::uint32_t partition(Range range, const Node& node, Vec3 reference,
@@ -96,6 +96,7 @@ class TreeBuilder {
     [[nodiscard]] std::uint32_t partition_at(Range range, const Threshold& threshold,
                                              Vec3 reference, std::array<Moments, 2>& moments);
     void fit_box(Range range, const Moments& moments, Vec3 reference, Node& node) const;
+    [[nodiscard]] std::vector<Vec3> corners_of(Range range) const;
     [[nodiscard]] Moments moments_of(Range range, Vec3 reference) const;
 
     BuildOptions options_;

@@ -174,7 +174,7 @@ def test_build_with_several_faults_exits_with_the_highest(here, obbtree):
         (("cube.stl", "-o", ""), "an empty word names no file"),
         (("cube.stl", "-o", "-"), "not to standard output"),
         (("",), "an empty word names no file"),
-        (("cube.stl", "--fit", "hull"), "'hull' is not one of"),
+        (("cube.stl", "--fit", "tight"), "'tight' is not one of"),
         (("cube.stl", "--max-memory", "lots"), "'lots' is no number of bytes"),
         (("cube.stl", "--max-memory", "-5"), "'-5' is no number of bytes"),
         (("cube.stl", "--max-memory", ""), "'' is no number of bytes"),
