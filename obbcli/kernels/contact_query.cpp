@@ -11,15 +11,6 @@ namespace obb {
 
 namespace {
 
-// Earliest first; of equal times the deepest, so that triangles are reached early.
-struct LaterFirst {
-    template <typename Entry>
-    bool operator()(const Entry& x, const Entry& y) const {
-        return x.time > y.time ||
-               (x.time == y.time && x.a.depth + x.b.depth < y.a.depth + y.b.depth);
-    }
-};
-
 struct LaterLow {
     bool operator()(const Contact& x, const Contact& y) const {
         return std::tuple(x.low, x.triangle_a, x.triangle_b) >
@@ -36,7 +27,7 @@ constexpr std::uint64_t kStallPops = 2000;
 // Boxes this near, of their own size, are said to meet when they cannot be told apart any longer.
 constexpr double kAllButMeeting = 0x1p-20;
 // A pair is opened for as long as its boxes take to move by their own size, times this.
-constexpr double kWindow = 1;
+constexpr double kWindow = 2;
 // Beyond this an angle in twice the digits of a double says nothing any more.
 constexpr double kMostRadians = 0x1p50;
 
@@ -75,6 +66,7 @@ void ContactQuery::set_units() {
     }
     a_.set_units(length_exponent_, time_exponent_);
     b_.set_units(length_exponent_, time_exponent_);
+    set_motion();
     pivot_between_ = scaled(between, -length_exponent_);
     closing_velocity_ = scaled(velocity, time_exponent_ - length_exponent_);
     duration_ = std::ldexp(options_.duration, -time_exponent_);
@@ -87,9 +79,25 @@ void ContactQuery::set_units() {
         0x1p-380;
 }
 
+void ContactQuery::set_motion() {
+    const Spin &a = a_.spin(), &b = b_.spin();
+    motion_->velocity = halves(a.velocity(), b.velocity());
+    motion_->axis = halves(a.axis(), b.axis());
+    motion_->speed = halves(a.speed(), b.speed());
+    motion_->square = (1 + 0x1p-40) * motion_->speed * motion_->speed;
+    motion_->is_still = motion_->speed == every(0.0, motion_->speed);
+    motion_->node_scale = halves(a_.node_scale(), b_.node_scale());
+    const double skew = std::max(a_.skew(), b_.skew());
+    motion_->skew = every(skew, motion_->speed);
+}
+
 void ContactQuery::set_time(double time) {
     a_.set_time(time);
     b_.set_time(time);
+    for (std::size_t i = 0; i < 3; ++i) {
+        motion_->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
+    }
+    motion_->shift = halves(a_.shift(), b_.shift());
 }
 
 MovingFrame ContactQuery::frame(double absolute, double time) const {
@@ -108,8 +116,10 @@ bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
            !(options_.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
 }
 
+// The largest half extent, in the query's units; nothing for triangles.
 double ContactQuery::size_of(const MovingTree& body, const NodeRef& ref) {
-    return std::ldexp(norm_inf(half_extents_of(body.tree().node(ref))), body.tree().scale_exponent);
+    return ref.is_triangle() ? 0
+                             : body.node_scale() * norm_inf(half_extents_of(body.tree().node(ref)));
 }
 
 // The time up to which a step proves a pair apart, rounded down; nothing where others see to the
@@ -127,19 +137,9 @@ std::optional<double> ContactQuery::later(const Entry& entry, double step) {
     return std::max(entry.time, below);
 }
 
-double ContactQuery::next_time() const {
-    return queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.front().time;
-}
-
+// Of equal times the deepest comes first, so that triangles are reached early.
 void ContactQuery::push(const Entry& entry) {
-    queue_.push_back(entry);
-    std::push_heap(queue_.begin(), queue_.end(), LaterFirst{});
-}
-
-// What cannot touch before a known contact is of no interest any more.
-void ContactQuery::forget_after(double time) {
-    std::erase_if(queue_, [&](const Entry& e) { return e.time > time; });
-    std::make_heap(queue_.begin(), queue_.end(), LaterFirst{});
+    queue_.push(entry, entry.time, entry.a.depth + entry.b.depth);
 }
 
 bool ContactQuery::advance(std::uint64_t max_pops) {
@@ -147,9 +147,7 @@ bool ContactQuery::advance(std::uint64_t max_pops) {
         if (has_ended() || is_ready()) {
             break;
         }
-        std::pop_heap(queue_.begin(), queue_.end(), LaterFirst{});
-        const Entry entry = queue_.back();
-        queue_.pop_back();
+        const Entry entry = queue_.pop();
         ++counts_.pops;
         visit(entry);
     }
@@ -161,7 +159,7 @@ bool ContactQuery::has_ended() {
     if (is_finished_) {
         return true;
     }
-    const double next = next_time();
+    const double next = queue_.next_time();
     const double stalled = stalled_.empty() ? next : stalled_.front().time;
     lower_bound_ = std::min({next, stalled, duration_});
     if (exact_ && (next >= exact_->high || options_.any_contact)) {
@@ -172,7 +170,7 @@ bool ContactQuery::has_ended() {
     } else if (!stalled_.empty() &&
                (next > stalled + time_tolerance_ || counts_.pops > stall_pops_ + kStallPops)) {
         end_stalled(stalled_);
-    } else if (queue_.empty()) {
+    } else if (queue_.is_empty()) {
         finish(std::nullopt);
     }
     return is_finished_;
@@ -203,7 +201,9 @@ void ContactQuery::name_triangles(Contact& contact) const {
 }
 
 // Others may still come at the same time.
-bool ContactQuery::is_ready() const { return !found_.empty() && found_.front().low < next_time(); }
+bool ContactQuery::is_ready() const {
+    return !found_.empty() && found_.front().low < queue_.next_time();
+}
 
 std::optional<Contact> ContactQuery::take() {
     if (!is_ready()) {
@@ -261,19 +261,12 @@ void ContactQuery::visit(const Entry& entry) {
     }
 }
 
-template <bool kOpensA>
-void ContactQuery::advance_child(const Entry& entry, const NodeRef& child, double step) {
-    if (const std::optional<double> time = later(entry, step)) {
-        push(kOpensA ? Entry{*time, entry.end, child, entry.b, entry.window}
-                     : Entry{*time, entry.end, entry.a, child, entry.window});
-    }
-}
-
-// How long it takes two boxes to move by their own sizes against each other, about.
-double ContactQuery::window(const Obb& a, const Obb& b) const {
+// How long it takes a pair's boxes to move by their own sizes against each other, about.
+double ContactQuery::window(const Entry& entry) const {
     const Vec3 wa = a_.spin().velocity(), wb = b_.spin().velocity();
-    const Vec3 velocity = closing_velocity_ + cross(wb, b.center) - cross(wa, a.center);
-    const double size_a = norm_1(a.half_extents), size_b = norm_1(b.half_extents);
+    const Vec3 velocity =
+        closing_velocity_ + cross(wb, lane(boxes_->center, 2)) - cross(wa, lane(boxes_->center, 0));
+    const double size_a = size_of(a_, entry.a), size_b = size_of(b_, entry.b);
     const double turning = size_a * a_.spin().speed() + size_b * b_.spin().speed();
     return kWindow * (size_a + size_b) / (norm_1(velocity) + turning);
 }
@@ -308,71 +301,81 @@ bool ContactQuery::is_over(const Entry& entry) {
     if (!is_needed) {
         return true;
     }
-    set_time(entry.time);
-    ++counts_.box_tests;
-    const Obb a = a_.box(entry.a), b = b_.box(entry.b);
-    const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
-    const std::optional<double> time = later(entry, time_apart(a, b, now));
+    const std::optional<double> time = later(entry, step_of_boxes(entry, 0));
     if (!time) {
         return true;
     }
     // Far enough apart to be pushed on as a whole.
-    const bool has_parted = *time - entry.time > 0.5 * window(a, b);
+    const bool has_parted = *time - entry.time > 0.5 * window(entry);
     if (has_parted) {
         push({*time, entry.end, entry.a, entry.b, entry.window});
     }
     return has_parted;
 }
 
+// The boxes of two parts of each body at the present time.
+void ContactQuery::place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b) {
+    static constexpr Node kNone{{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0, 0, 0};
+    const auto node = [](const MovingTree& body, const NodeRef& ref) {
+        return ref.is_triangle() ? &kNone : &body.tree().node(ref);
+    };
+    place_boxes(*motion_, {node(a_, a[0]), node(a_, a[1]), node(b_, b[0]), node(b_, b[1])},
+                *boxes_);
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (a[k].is_triangle()) {
+            set_lane(*boxes_, k, a_.box(a[k]));
+        }
+        if (b[k].is_triangle()) {
+            set_lane(*boxes_, 2 + k, b_.box(b[k]));
+        }
+    }
+}
+
 // Replaces a pair by its children's, each pushed on as far as its own boxes prove it apart.
 template <bool kOpensA>
 void ContactQuery::open(Entry entry) {
     set_time(entry.time);
-    MovingTree& body = kOpensA ? a_ : b_;
     const NodeRef& ref = kOpensA ? entry.a : entry.b;
-    const Obb other = kOpensA ? b_.box(entry.b) : a_.box(entry.a);
-    if (!is_translation_) {
-        const Obb box = body.box(ref);
-        close_after(entry, kOpensA ? window(box, other) : window(other, box));
-    }
+    const NodeRef& other = kOpensA ? entry.b : entry.a;
+    const TreeView& tree = (kOpensA ? a_ : b_).tree();
+    const Node& node = tree.node(ref);
+    const bool is_leaf = TreeView::is_leaf(node);
+    // Of a leaf the triangles are the children, two at a time.
+    const std::uint32_t begin = is_leaf ? ref.begin : 0, end = is_leaf ? ref.end : 2;
     const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
-    const auto step_of = [&](const NodeRef& child) {
-        ++counts_.box_tests;
-        const Obb box = body.box(child);
-        return kOpensA ? time_apart(box, other, now) : time_apart(other, box, now);
-    };
-    const Node& node = body.tree().node(ref);
-    if (TreeView::is_leaf(node)) {
-        for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
-            const NodeRef child = TreeView::triangle_ref(ref, i);
-            advance_child<kOpensA>(entry, child, step_of(child));
+    for (std::uint32_t i = begin; i < end; i += 2) {
+        const std::uint32_t last = std::min(i + 1, end - 1);
+        const std::array<NodeRef, 2> children =
+            is_leaf ? std::array{TreeView::triangle_ref(ref, i), TreeView::triangle_ref(ref, last)}
+                    : tree.children(ref, node);
+        const std::array<NodeRef, 2> others{other, other};
+        place(kOpensA ? children : others, kOpensA ? others : children);
+        if (i == begin && !is_translation_) {
+            close_after(entry, window(entry));
         }
-        return;
-    }
-    const auto children = body.tree().children(ref, node);
-    if (children[0].is_triangle() || children[1].is_triangle()) {
-        for (const NodeRef& child : children) {
-            advance_child<kOpensA>(entry, child, step_of(child));
+        const std::array<double, 2> steps = times_apart(*motion_, *boxes_, now);
+        for (std::uint32_t k = 0; k <= last - i; ++k) {
+            ++counts_.box_tests;
+            if (const std::optional<double> time = later(entry, steps[k])) {
+                push(kOpensA ? Entry{*time, entry.end, children[k], entry.b, entry.window}
+                             : Entry{*time, entry.end, entry.a, children[k], entry.window});
+            }
         }
-        return;
     }
-    const BasicObb<Pack> boxes =
-        body.boxes(body.tree().node(children[0]), body.tree().node(children[1]));
-    counts_.box_tests += 2;
-    const Pack steps = kOpensA ? time_apart(boxes, broadcast(other), now)
-                               : time_apart(broadcast(other), boxes, now);
-    for (std::size_t k = 0; k < 2; ++k) {
-        advance_child<kOpensA>(entry, children[k], steps[k]);
-    }
+}
+
+// How long the pair's own boxes stay apart, with a margin to spare.
+double ContactQuery::step_of_boxes(const Entry& entry, double margin) {
+    set_time(entry.time);
+    ++counts_.box_tests;
+    place({entry.a, entry.a}, {entry.b, entry.b});
+    return times_apart(*motion_, *boxes_,
+                       frame(a_.box_error() + b_.box_error() + margin, entry.time))[0];
 }
 
 // A node that stands for what it holds: pushed on as long as the boxes are apart.
 void ContactQuery::meet_boxes(const Entry& entry) {
-    set_time(entry.time);
-    ++counts_.box_tests;
-    const Obb a = a_.box(entry.a), b = b_.box(entry.b);
-    const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
-    const std::optional<double> time = later(entry, time_apart(a, b, now));
+    const std::optional<double> time = later(entry, step_of_boxes(entry, 0));
     if (!time) {
         return;
     }
@@ -381,16 +384,16 @@ void ContactQuery::meet_boxes(const Entry& entry) {
         return;
     }
     // A step too short for a double to tell: the boxes all but meet, or turn too fast.
-    const double sizes = norm(a.half_extents) + norm(b.half_extents);
-    MovingFrame closer = now;
-    closer.absolute += kAllButMeeting * sizes;
-    if (time_apart(a, b, closer) > 0) {
+    const Vec3 ha = lane(boxes_->half_extents, 0), hb = lane(boxes_->half_extents, 2);
+    const double sizes = std::hypot(ha.x, ha.y, ha.z) + std::hypot(hb.x, hb.y, hb.z);
+    const double margin = kAllButMeeting * sizes;
+    if (step_of_boxes(entry, margin) > 0) {
         give_up(entry.time);
         return;
     }
+    const double absolute = frame(a_.box_error() + b_.box_error() + margin, entry.time).absolute;
     // Boxes that no face axis separates may be apart still, by no more than their diagonals.
-    const double bound =
-        std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * closer.absolute, length_exponent_);
+    const double bound = std::ldexp(4 * (1 + 0x1p-16) * sizes + 2 * absolute, length_exponent_);
     report({entry.time, entry.time, Evidence::kBoxes, entry.a, entry.b, 0, bound});
 }
 

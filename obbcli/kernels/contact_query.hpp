@@ -3,11 +3,14 @@
 // bodies.
 #pragma once
 
+#include "box_steps.hpp"
 #include "moving_tree.hpp"
+#include "time_queue.hpp"
 #include "triangle_advancement.hpp"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_set>
@@ -97,23 +100,22 @@ class ContactQuery {
     };
 
     void set_units();
+    void set_motion();
     void set_time(double time);
     [[nodiscard]] MovingFrame frame(double absolute, double time) const;
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
                                std::uint32_t max_depth) const;
     [[nodiscard]] static double size_of(const MovingTree& body, const NodeRef& ref);
     [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
-    [[nodiscard]] double next_time() const;
     void push(const Entry& entry);
-    void forget_after(double time);
     void visit(const Entry& entry);
     template <bool kOpensA>
     void open(Entry entry);
-    [[nodiscard]] double window(const Obb& a, const Obb& b) const;
+    [[nodiscard]] double window(const Entry& entry) const;
     void close_after(Entry& entry, double wide);
+    void place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b);
+    [[nodiscard]] double step_of_boxes(const Entry& entry, double margin);
     [[nodiscard]] bool is_over(const Entry& entry);
-    template <bool kOpensA>
-    void advance_child(const Entry& entry, const NodeRef& child, double step);
     void meet_triangles(const Entry& entry);
     void meet_in_translation(const Entry& entry);
     void meet_boxes(const Entry& entry);
@@ -138,6 +140,9 @@ class ContactQuery {
     [[nodiscard]] double triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const;
 
     MovingTree a_, b_;
+    // Apart from this object, which Python aligns no better than other objects.
+    std::unique_ptr<LaneMotion> motion_ = std::make_unique<LaneMotion>();
+    std::unique_ptr<BasicObb<Four>> boxes_ = std::make_unique<BasicObb<Four>>(); // of the parts
     ContactQueryOptions options_;
     // In the query's units.
     double duration_ = 0, time_tolerance_ = 0, distance_tolerance_ = -1, clearance_ = 0;
@@ -146,7 +151,7 @@ class ContactQuery {
     double relative_ = 0, between_error_ = 0;
     bool is_translation_ = false;
 
-    std::vector<Entry> queue_;
+    TimeQueue<Entry> queue_;
     std::vector<bool> is_needed_; // of windows: whether not all in it was proven apart for good
     std::vector<std::uint32_t> free_windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when

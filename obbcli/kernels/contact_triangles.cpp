@@ -44,7 +44,7 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
         return;
     }
     exact_ = contact;
-    forget_after(high);
+    queue_.erase_after(high); // what cannot touch before is of no interest any more
 }
 
 double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {

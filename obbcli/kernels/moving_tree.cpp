@@ -18,6 +18,18 @@ Mat3 product(const Mat3& a, const Mat3& b) {
     return result;
 }
 
+// Bounds how far from orthonormal axes are that a matrix turns: their own defect is rounding.
+double skew_of(const Mat3& m) {
+    double defect = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            const double wanted = i == j ? 1 : 0;
+            defect = std::max(defect, std::fabs(dot(m.column(i), m.column(j)) - wanted));
+        }
+    }
+    return 3 * defect + 0x1p-45;
+}
+
 // Middle of the root, posed, and a radius about it that holds the body; mesh units.
 struct Ball {
     Vec3 center;
@@ -40,6 +52,7 @@ Ball ball_around(const TreeView& tree, const Pose& pose) {
 
 MovingTree::MovingTree(const TreeView& tree, const Pose& pose, const Screw& screw)
     : tree_(&tree), pose_(pose), screw_(screw), spin_(screw.angular_velocity) {
+    skew_ = skew_of(pose.rotation);
     const Ball ball = ball_around(tree, pose);
     if (spin_.is_still()) {
         screw_.pivot = ball.center;
@@ -69,41 +82,17 @@ void MovingTree::set_time(double time) {
     shift_ = spun_ * offset_;
 }
 
-template <typename Real>
-BasicObb<Real> MovingTree::turned(BasicObb<Real> box) const {
-    const auto apply = [&](Vector3<Real> v) {
-        const auto& m = matrix_.rows;
-        return Vector3<Real>{m[0].x * v.x + m[0].y * v.y + m[0].z * v.z,
-                             m[1].x * v.x + m[1].y * v.y + m[1].z * v.z,
-                             m[2].x * v.x + m[2].y * v.y + m[2].z * v.z};
-    };
-    const auto scaled_by = [&](Vector3<Real> v) {
-        return Vector3<Real>{node_scale_ * v.x, node_scale_ * v.y, node_scale_ * v.z};
-    };
-    const Vector3<Real> c = apply(scaled_by(box.center));
-    box.center = {c.x + shift_.x, c.y + shift_.y, c.z + shift_.z};
-    box.half_extents = scaled_by(box.half_extents);
-    for (Vector3<Real>& axis : box.axes) {
-        axis = apply(axis);
-    }
-    return box;
-}
-
 Obb MovingTree::box(const NodeRef& ref) const {
     if (ref.is_triangle()) {
         return box_around(triangle(ref));
     }
     const Node& node = tree_->node(ref);
-    return turned(Obb{node.center, axes_of(node.rotation), half_extents_of(node)});
-}
-
-BasicObb<Pack> MovingTree::boxes(const Node& first, const Node& second) const {
-    const auto& p = first.rotation;
-    const auto& q = second.rotation;
-    return turned(BasicObb<Pack>{
-        packed(first.center, second.center),
-        axes_of_quaternion(Pack{p[0], q[0]}, Pack{p[1], q[1]}, Pack{p[2], q[2]}, Pack{p[3], q[3]}),
-        packed(half_extents_of(first), half_extents_of(second))});
+    Obb box{matrix_ * (node_scale_ * node.center) + shift_, axes_of(node.rotation),
+            node_scale_ * half_extents_of(node)};
+    for (Vec3& axis : box.axes) {
+        axis = matrix_ * axis;
+    }
+    return box;
 }
 
 Triangle MovingTree::posed_triangle(const NodeRef& ref) const {

@@ -1,7 +1,7 @@
 // A tree in rigid motion: its boxes and triangles at any time, relative to its pivot.
 #pragma once
 
-#include "advancement.hpp"
+#include "obb.hpp"
 #include "pose.hpp"
 #include "screw.hpp"
 #include "tree.hpp"
@@ -31,25 +31,30 @@ class MovingTree {
     // By how much a box may miss a vertex: what posing and shifting it rounded away.
     [[nodiscard]] double box_error() const { return box_error_; }
 
+    // The nodes' unit in the query's.
+    [[nodiscard]] double node_scale() const { return node_scale_; }
+    // Bounds how far from orthonormal the axes of boxes are once turned.
+    [[nodiscard]] double skew() const { return skew_; }
+
     // All that follows is at this time.
     void set_time(double time);
+    // From tree coordinates to those about the pivot: x -> matrix * x + shift.
+    [[nodiscard]] const Mat3& matrix() const { return matrix_; }
+    [[nodiscard]] Vec3 shift() const { return shift_; }
     [[nodiscard]] Obb box(const NodeRef& ref) const;
-    [[nodiscard]] BasicObb<Pack> boxes(const Node& first, const Node& second) const;
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
 
     // A triangle's posed vertices, the input of every exact question, in mesh units.
     [[nodiscard]] Triangle posed_triangle(const NodeRef& ref) const;
 
   private:
-    template <typename Real>
-    [[nodiscard]] BasicObb<Real> turned(BasicObb<Real> box) const;
-
     const TreeView* tree_;
     Pose pose_;
     Screw screw_;
     Spin spin_;
     double reach_ = 0, extent_ = 0;
     double box_error_ = 0;
+    double skew_ = 0;
     int length_exponent_ = 0;
     double node_scale_ = 1;
     Vec3 pivot_{0, 0, 0};  // scaled

@@ -1,4 +1,5 @@
-// Two doubles treated as one: every machine in use has registers for that.
+// Two or four doubles treated as one: every machine in use has registers for two, and compilers
+// make do where it has none for four.
 #pragma once
 
 #include "vec.hpp"
@@ -11,6 +12,9 @@ namespace obb {
 using Pack = double __attribute__((vector_size(16)));
 using PackMask = std::int64_t __attribute__((vector_size(16))); // all bits or none a lane
 
+using Four = double __attribute__((vector_size(32)));
+using FourMask = std::int64_t __attribute__((vector_size(32))); // all bits or none a lane
+
 // The same kernels run on doubles and on packs through these few.
 [[nodiscard]] inline double absolute(double a) { return std::fabs(a); }
 [[nodiscard]] inline Pack absolute(Pack a) {
@@ -18,22 +22,34 @@ using PackMask = std::int64_t __attribute__((vector_size(16))); // all bits or n
     return reinterpret_cast<Pack>(reinterpret_cast<PackMask>(a) &
                                   PackMask{kAllButSign, kAllButSign});
 }
+[[nodiscard]] inline Four absolute(Four a) {
+    constexpr std::int64_t kAll = 0x7fffffffffffffff; // but the sign
+    return reinterpret_cast<Four>(reinterpret_cast<FourMask>(a) & FourMask{kAll, kAll, kAll, kAll});
+}
 [[nodiscard]] inline bool is_all(bool mask) { return mask; }
 [[nodiscard]] inline bool is_all(PackMask mask) { return (mask[0] & mask[1]) != 0; }
 
 [[nodiscard]] inline bool is_none(bool mask) { return !mask; }
 [[nodiscard]] inline bool is_none(PackMask mask) { return (mask[0] | mask[1]) == 0; }
+[[nodiscard]] inline bool is_none(FourMask mask) {
+    return (mask[0] | mask[1] | mask[2] | mask[3]) == 0;
+}
 
 [[nodiscard]] inline double square_root(double a) { return std::sqrt(a); }
 [[nodiscard]] inline Pack square_root(Pack a) { return Pack{std::sqrt(a[0]), std::sqrt(a[1])}; }
+[[nodiscard]] inline Four square_root(Four a) {
+    return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
 [[nodiscard]] inline double select(bool mask, double a, double b) { return mask ? a : b; }
 [[nodiscard]] inline Pack select(PackMask mask, Pack a, Pack b) { return mask ? a : b; }
+[[nodiscard]] inline Four select(FourMask mask, Four a, Four b) { return mask ? a : b; }
 template <typename Real>
 [[nodiscard]] inline Real maximum(Real a, Real b) {
     return select(a > b, a, b);
 }
 [[nodiscard]] inline double every(double a, double) { return a; }
 [[nodiscard]] inline Pack every(double a, Pack) { return Pack{a, a}; }
+[[nodiscard]] inline Four every(double a, Four) { return Four{a, a, a, a}; }
 
 [[nodiscard]] inline Vector3<Pack> packed(Vec3 a, Vec3 b) {
     return {Pack{a.x, b.x}, Pack{a.y, b.y}, Pack{a.z, b.z}};

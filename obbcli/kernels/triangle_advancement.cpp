@@ -56,20 +56,17 @@ class TriangleAxes {
 
     // Tries n in the world; cheap where it shows no gap.
     void try_axis(Vec3 direction) {
-        Vec3 n = unit(direction);
         std::array<double, 3> pa, pb;
-        const double offset = dot(n, frame_.between);
-        for (std::size_t k = 0; k < 3; ++k) {
-            pa[k] = dot(n, a_.points[k]);
-            pb[k] = dot(n, b_.points[k]) + offset;
+        if (!(gap_along(direction, pa, pb) > 0)) {
+            return; // before a root and a division are spent on it
         }
-        const double ahead = smallest(pb[0], pb[1], pb[2]) - largest(pa[0], pa[1], pa[2]);
-        const double behind = smallest(pa[0], pa[1], pa[2]) - largest(pb[0], pb[1], pb[2]);
-        const double gap = larger(ahead, behind);
+        Vec3 n = unit(direction);
+        const double gap = gap_along(n, pa, pb);
         if (!(gap > error_)) {
             return;
         }
-        if (behind > ahead) {
+        const bool is_behind = pa[0] > pb[0];
+        if (is_behind) {
             n = -n;
             for (std::size_t k = 0; k < 3; ++k) {
                 pa[k] = -pa[k];
@@ -90,6 +87,19 @@ class TriangleAxes {
     }
 
   private:
+    // Projections of both, and the gap between them.
+    [[nodiscard]] double gap_along(Vec3 n, std::array<double, 3>& pa,
+                                   std::array<double, 3>& pb) const {
+        const double offset = dot(n, frame_.between);
+        for (std::size_t k = 0; k < 3; ++k) {
+            pa[k] = dot(n, a_.points[k]);
+            pb[k] = dot(n, b_.points[k]) + offset;
+        }
+        const double ahead = smallest(pb[0], pb[1], pb[2]) - largest(pa[0], pa[1], pa[2]);
+        const double behind = smallest(pa[0], pa[1], pa[2]) - largest(pb[0], pb[1], pb[2]);
+        return larger(ahead, behind);
+    }
+
     void consider(const TriangleStep& step) {
         const double gap = larger(best_.gap, step.gap);
         if (step.time > best_.time) {
