@@ -99,12 +99,16 @@ class Query:
         bodies, end = self._bodies, self._duration
         moves = end > 0 and not all(body.motion.is_at_rest for body in bodies)
         if self._accuracy.method == "sampled" and moves:
-            accuracy = replace(self._accuracy, time_tolerance=self._time_tolerance())
+            accuracy = replace(
+                self._accuracy, time_tolerance=time_tolerance(self._accuracy, self._duration)
+            )
             return SampledQueries(bodies, self._trees, end, accuracy, ask)
         if not any(isinstance(body.motion, PathMotion) for body in bodies):
             return None
         # A bracket may consist of two: of the time the bodies are near, and of contact.
-        exact = replace(self._accuracy, time_tolerance=0.5 * self._time_tolerance())
+        exact = replace(
+            self._accuracy, time_tolerance=0.5 * time_tolerance(self._accuracy, self._duration)
+        )
         return LegQueries(bodies, self._trees, end, exact, ask)
 
     @property
@@ -192,12 +196,9 @@ class Query:
             self._bodies,
             self._trees,
             self._duration,
-            replace(self._accuracy, time_tolerance=self._time_tolerance()),
+            self._accuracy,
             any_contact=self._any_contact,
         )
-
-    def _time_tolerance(self) -> float:
-        return time_tolerance(self._accuracy, self._duration)
 
     def _answer(self) -> FirstContact:
         if self._solids is not None and self._solids.contained is not None:
@@ -208,7 +209,7 @@ class Query:
 
     def _contact(self) -> Contact:
         if self._at_start.is_by_boxes:
-            return boxes_at_start(self._at_start.error_bound)
+            return self._boxes_at_start()
         witness = self._at_start.witness()
         if witness is not None:
             return contact_at_start(self._bodies, self._trees, *witness)
@@ -218,6 +219,16 @@ class Query:
         if self._moving is None or found is None:
             return Contact(status=Status.SEPARATED)
         return contact_of(self._moving, found, self._accuracy.clearance)
+
+    def _boxes_at_start(self) -> Contact:
+        """Return the contact of boxes at t = 0, with the place where some of them meet."""
+        query = self._moving_query()
+        query.advance(POPS_A_SLICE)
+        found = query.contact()
+        is_by_boxes = found is not None and found.evidence is kernels.Evidence.BOXES
+        if found is None or not is_by_boxes or found.low > 0:
+            return boxes_at_start(self._at_start.error_bound)
+        return contact_of(query, found, self._accuracy.clearance)
 
     def _counts(self) -> Counts:
         """Box tests, triangle tests, exact ones and pops so far."""

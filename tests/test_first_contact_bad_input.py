@@ -163,3 +163,14 @@ def test_bodies_are_asked_about_by_their_shapes_alone() -> None:
 
     with pytest.raises(MotionError, match="pass an ObbTree, a Mesh or a path"):
         obbcli.first_contact(as_body(moving), 42)  # type: ignore[arg-type]
+
+
+def test_turning_point_that_runs_into_a_point_is_answered() -> None:
+    here, there = Mesh([[0.0, 0, 0]] * 3, [[0, 1, 2]]), Mesh([[3.0, 0, 0]] * 3, [[0, 1, 2]])
+
+    answer = obbcli.first_contact(Body(here, motion=Motion(X, 3 * Z)), there, 10.0)
+
+    assert answer.status is Status.CONTACT
+    assert answer.time == pytest.approx(3.0, abs=1e-13)
+    assert answer.distance is not None
+    assert answer.distance <= 1e-13

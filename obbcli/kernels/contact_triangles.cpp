@@ -181,7 +181,8 @@ std::optional<Contact> ContactQuery::contact_of(std::span<const Entry> stalled) 
     }
     Vec3 direction;
     const double distance = distance_at(first, first.time, direction);
-    if (distance - options_.clearance > kSameDistance * (a_.extent() + b_.extent())) {
+    const double extents = a_.extent() + b_.extent(); // of points: none
+    if (extents > 0 && distance - options_.clearance > kSameDistance * extents) {
         return std::nullopt;
     }
     return Contact{first.time, first.time, Evidence::kWithinTolerance, first.a, first.b,
