@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from obbcli.cli import main
+from obbcli.cli import run_process
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(run_process())

@@ -18,7 +18,7 @@ from obbcli.question import (
     trees_of,
     whole_limit,
 )
-from obbcli.results import Collision, Status
+from obbcli.verdict import Collision, Status
 
 if TYPE_CHECKING:
     import numpy as np

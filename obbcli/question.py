@@ -11,8 +11,8 @@ from obbcli import kernels
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.mesh import Mesh
 from obbcli.motion import PathMotion
-from obbcli.results import QueryStats
 from obbcli.tree import ObbTree, load_tree
+from obbcli.verdict import QueryStats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What a question answers: status words, results and the counters behind them, all frozen.
+"""What a question answers: the contacts and distances, and what `verdict` has of them, all frozen.
 
 Kernels and queries fill them, reports read them; nothing here computes.
 """
@@ -6,115 +6,22 @@ Kernels and queries fill them, reports read them; nothing here computes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TypeAlias
 
-from obbcli.errors import UnresolvedError
+from obbcli.verdict import Collision, Inner, QueryStats, Status, is_contact
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+__all__ = [
+    "Collision",
+    "Contact",
+    "Distance",
+    "FirstContact",
+    "Inner",
+    "QueryStats",
+    "Status",
+    "Vector",
+]
 
 Vector: TypeAlias = tuple[float, float, float]
-# The body that lies inside the other, or a part of it does.
-Inner: TypeAlias = Literal["a", "b"]
-
-
-class Status(str, Enum):
-    """How a question ended; the values are the words of the JSON documents."""
-
-    SEPARATED = "separated"
-    """No contact in the whole closed interval: a proof, unless the answer was sampled."""
-    CONTACT = "contact"
-    """First contact at a time later than 0."""
-    OVERLAP_AT_START = "overlap_at_start"
-    """Contact at t = 0, touching included; also of bodies at rest."""
-    UNRESOLVED = "unresolved"
-    """A limit was reached before the answer was known."""
-
-    def __str__(self) -> str:
-        """Return the bare word."""
-        return self.value
-
-
-class QueryStats(NamedTuple):
-    """What a question cost.
-
-    Attributes:
-        box_tests: pairs of boxes tested.
-        triangle_tests: pairs of triangles tested.
-        exact_triangle_tests: those of them that exact arithmetic had to decide.
-        pops: pairs taken from the queue or stack.
-        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
-            is asked for.
-        nodes_built_b: the same for B.
-        nodes_possible_a: nodes that A's tree can have.
-        nodes_possible_b: the same for B.
-        seconds: s of wall time by stage.
-    """
-
-    box_tests: int
-    triangle_tests: int
-    exact_triangle_tests: int
-    pops: int
-    nodes_built_a: int
-    nodes_built_b: int
-    nodes_possible_a: int
-    nodes_possible_b: int
-    seconds: Mapping[str, float]
-
-
-@dataclass(frozen=True, init=False)
-class Collision:
-    """Whether two bodies touch at any time asked about.
-
-    Attributes:
-        status: how the question ended. `Status.SEPARATED` is a proof unless `approximate`.
-        witness: the ids of a triangle of A and one of B that meet; None where nothing meets or
-            where boxes stand for their triangles.
-        approximate: whether boxes stood for triangles, so that contact is not proven, or the motion
-            was sampled, so that nothing is.
-        error_bound: mesh units; how far apart the surfaces can be although contact is said; of a
-            sampled answer also by how much any point's path relative to the other body was off the
-            true one. 0 where exact.
-        stats: what the question cost.
-        contained: of solids that do not touch, `"a"` where A or a connected part of it lies inside
-            B, else `"b"` where B or a part of it lies inside A. None elsewhere.
-    """
-
-    status: Status
-    witness: tuple[int, int] | None
-    approximate: bool
-    error_bound: float
-    stats: QueryStats
-    contained: Inner | None = None
-
-    def __init__(
-        self,
-        status: Status,
-        witness: tuple[int, int] | None,
-        approximate: bool,
-        error_bound: float,
-        stats: QueryStats,
-        contained: Inner | None = None,
-    ) -> None:
-        # At once: what the dataclass would do field by field takes longer than many a question.
-        vars(self).update(
-            status=status,
-            witness=witness,
-            approximate=approximate,
-            error_bound=error_bound,
-            stats=stats,
-            contained=contained,
-        )
-
-    @property
-    def collides(self) -> bool:
-        """Return whether the bodies touch.
-
-        Raises:
-            UnresolvedError: a limit was reached before the answer was known.
-        """
-        return _collides(self.status)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,7 +86,7 @@ class Contact:
         Raises:
             UnresolvedError: a limit was reached before the answer was known.
         """
-        return _collides(self.status)
+        return is_contact(self.status)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,13 +127,3 @@ class Distance:
     triangle_a: int
     triangle_b: int
     stats: QueryStats
-
-
-def _collides(status: Status) -> bool:
-    if status is Status.UNRESOLVED:
-        raise UnresolvedError(
-            "collides",
-            "the question stopped at a limit before its answer was known",
-            "raise max_iterations or timeout",
-        )
-    return status is not Status.SEPARATED

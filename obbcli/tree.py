@@ -313,7 +313,8 @@ def load_tree(path: str | os.PathLike[str], *, verify: bool = True) -> ObbTree:
     """
     if begins_as_tree(Path(path)):
         return ObbTree.open(path, verify=verify)
-    return ObbTree.build(path)
+    # Nobody sees a tree that is made for one question: its mesh needs no name.
+    return ObbTree.build(load_mesh(path, hashed=False))
 
 
 def begins_as_tree(path: Path) -> bool:

@@ -9,7 +9,6 @@ the size of a page, so that a reader can verify just what it touches.
 
 from __future__ import annotations
 
-import json
 import os
 import struct
 import zlib
@@ -218,6 +217,8 @@ def _checked_header(data: memoryview, name: str) -> _Header:
 
 def _description(text: bytes, name: str) -> Description:
     """Return the description, whose every field must be there, of its type and of use."""
+    import json
+
     optional_text, optional_number = (str, type(None)), (int, type(None))
     types: dict[str, type | tuple[type, ...]] = {
         "fit": str,
@@ -267,6 +268,9 @@ def _verify_blocks(data: memoryview, crcs: tuple[int, ...], name: str) -> None:
 
 def _header(arrays: TreeArrays, data: bytes) -> bytes:
     """Return the whole header, its own checksum included."""
+    # Not at hand before: questions about meshes start without it.
+    import json
+
     text = json.dumps(asdict(arrays.description)).encode()
     view = memoryview(data)
     crcs = [zlib.crc32(view[i : i + BLOCK_BYTES]) for i in range(0, len(data), BLOCK_BYTES)]

@@ -31,6 +31,7 @@ LAYERS = (
         "motion",
         "accuracy",
         "results",
+        "verdict",
         "primitives",
         "treefile",
     ),

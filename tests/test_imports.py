@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -46,6 +47,75 @@ def test_bare_import_loads_no_part_of_the_package():
     loaded = modules_after("import obbcli")
 
     assert {name for name in loaded if name.startswith("obbcli")} == {"obbcli"}
+
+
+# What a question about two binary STL files needs of the package.
+NEEDED = {
+    "obbcli",
+    "obbcli.accuracy",
+    "obbcli.arrays",
+    "obbcli.cli",
+    "obbcli.cli.app",
+    "obbcli.cli.asking",
+    "obbcli.cli.boundary",
+    "obbcli.cli.collide",
+    "obbcli.cli.inputs",
+    "obbcli.cli.options",
+    "obbcli.cli.output",
+    "obbcli.cli.progress",
+    "obbcli.cli.question",
+    "obbcli.cli.types",
+    "obbcli.errors",
+    "obbcli.files",
+    "obbcli.growth",
+    "obbcli.kernels",
+    "obbcli.kernels._core",
+    "obbcli.mesh",
+    "obbcli.mesh.load",
+    "obbcli.mesh.measure",
+    "obbcli.mesh.mesh",
+    "obbcli.mesh.sniff",
+    "obbcli.mesh.source",
+    "obbcli.mesh.stl",
+    "obbcli.mesh.text",
+    "obbcli.mesh.topology",
+    "obbcli.motion",
+    "obbcli.pose",
+    "obbcli.query",
+    "obbcli.question",
+    "obbcli.report",
+    "obbcli.report.collide",
+    "obbcli.report.record",
+    "obbcli.report.table",
+    "obbcli.rotation",
+    "obbcli.tree",
+    "obbcli.treefile",
+    "obbcli.verdict",
+}
+# And of the standard library, beside what click and NumPy load: small modules, pathlib with its
+# parts of one version or other, what gettext looks up, what finds an editable installation.
+OTHERS = {
+    *("atexit", "bisect", "copy", "dataclasses", "fnmatch", "gc", "glob", "struct", "zlib"),
+    *("pathlib", "ntpath", "urllib", "urllib.parse", "ipaddress"),
+    "locale",
+    *("importlib.util", "importlib._abc"),
+}
+
+
+def test_question_about_stl_files_imports_what_it_needs_and_no_more(tmp_path):
+    triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    paths = [tmp_path / "a.stl", tmp_path / "b.stl"]
+    for path in paths:
+        path.write_bytes(bytes(80) + struct.pack("<I", 1) + triangle)
+    code = "import sys; from obbcli.cli import main; main(sys.argv[1:])"
+
+    loaded = modules_after(code, "collide", *map(str, paths))
+
+    beside = loaded - modules_after("import click, numpy")
+    own = {name for name in beside if name.partition(".")[0] == "obbcli"}
+    assert own == NEEDED
+    others = {name for name in beside - own if not name.startswith(("_", "pathlib."))}
+    assert others <= OTHERS
 
 
 @pytest.mark.parametrize("words", [("collide", "{0}", "{0}"), ("info", "{0}")])

@@ -68,8 +68,13 @@ class Asked(NamedTuple):
             ObbError: one of them cannot be read, as `read` says.
         """
         keep_inputs(self.common.output, (self.a, self.b))
-        verify = not self.no_verify
-        return read_pair(self.a, self.b, verify=verify, progress=self.common.shows_progress)
+        return read_pair(
+            self.a,
+            self.b,
+            verify=not self.no_verify,
+            hashed=self.common.json,
+            progress=self.common.shows_progress,
+        )
 
     def setting(
         self,

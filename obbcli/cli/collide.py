@@ -113,11 +113,12 @@ def _answer(
     question: Question, bodies: tuple[Body, Body], *, solid: bool, progress: bool
 ) -> Collision:
     """Return what `obbcli.collide` says; a moving question can be watched and interrupted."""
-    from obbcli.contact import Query
     from obbcli.query import collide, collision_of
 
     if not question.moves:
         return collide(*bodies, question.duration, question.accuracy, solid)
+    from obbcli.contact import Query
+
     query = Query(*bodies, question.duration, question.accuracy, solid=solid, any_contact=True)
     return collision_of(run(query, question.accuracy, progress=progress))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 import time
 from pathlib import Path
@@ -64,7 +63,7 @@ def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
             raise UsageError(f"-o {output}", fault, "write to another file")
 
 
-def read_pair(a: str, b: str, *, verify: bool, progress: bool) -> tuple[Input, Input]:
+def read_pair(a: str, b: str, *, verify: bool, hashed: bool, progress: bool) -> tuple[Input, Input]:
     """Return A and B as `read` does; one of them may be standard input.
 
     Raises:
@@ -72,16 +71,19 @@ def read_pair(a: str, b: str, *, verify: bool, progress: bool) -> tuple[Input, I
     """
     if a == b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    first = read(a, verify=verify, progress=progress)
-    return first, first if a == b else read(b, verify=verify, progress=progress)
+    first = read(a, verify=verify, hashed=hashed, progress=progress)
+    if a == b:
+        return first, first
+    return first, read(b, verify=verify, hashed=hashed, progress=progress)
 
 
-def read(name: str, *, verify: bool, progress: bool) -> Input:
+def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
     """Return a mesh or tree file with its tree, which is built over a mesh.
 
     Args:
         name: a path, or `-` for standard input.
         verify: whether a tree file's checksums are compared.
+        hashed: whether the SHA-256 of what is read will be asked for.
         progress: whether a bar may be drawn.
 
     Raises:
@@ -93,15 +95,22 @@ def read(name: str, *, verify: bool, progress: bool) -> Input:
     from obbcli.tree import ObbTree
 
     start = time.perf_counter()
-    shape, sha256 = read_shape(name, verify=verify)
+    shape, sha256 = read_shape(name, verify=verify, hashed=hashed)
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
             shape = ObbTree.build(shape, progress=move)
     return Input(name, shape, sha256, time.perf_counter() - start)
 
 
-def read_shape(name: str, *, verify: bool) -> tuple[Mesh | ObbTree, str | None]:
+def read_shape(
+    name: str, *, verify: bool, hashed: bool = True
+) -> tuple[Mesh | ObbTree, str | None]:
     """Return what a file or standard input holds, and the SHA-256 of its bytes where it is known.
+
+    Args:
+        name: a path, or `-` for standard input.
+        verify: whether a tree file's checksums are compared.
+        hashed: whether the SHA-256 of a mesh or a stream is found; that of a tree file is not.
 
     Raises:
         MeshError: the mesh cannot be read or is refused.
@@ -112,29 +121,30 @@ def read_shape(name: str, *, verify: bool) -> tuple[Mesh | ObbTree, str | None]:
     from obbcli.tree import ObbTree
 
     if name == STDIN:
-        return _from_bytes(_read_stdin(), None, _STDIN_NAME, verify=verify)
+        return _from_bytes(_read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
     path = Path(name)
     check_file(path)
     if path.is_fifo():
-        return _from_bytes(path.read_bytes(), path.suffix, name, verify=verify)
+        return _from_bytes(path.read_bytes(), path.suffix, name, verify=verify, hashed=hashed)
     if _is_tree(path):
         return ObbTree.open(name, verify=verify), None
-    mesh = load_mesh(name)
+    mesh = load_mesh(name, hashed=hashed)
     return mesh, mesh.sha256
 
 
 def _from_bytes(
-    data: bytes, suffix: str | None, name: str, *, verify: bool
+    data: bytes, suffix: str | None, name: str, *, verify: bool, hashed: bool
 ) -> tuple[Mesh | ObbTree, str | None]:
     """Return what a stream held: the suffix of its name tells where it is known, else its bytes."""
-    from obbcli.mesh import known_suffixes, load_mesh_bytes
+    from obbcli.mesh import digest_of, known_suffixes, load_mesh_bytes
     from obbcli.tree import ObbTree
     from obbcli.treefile import is_tree_file
 
     if is_tree_file(data):
-        return ObbTree.from_bytes(data, name, verify=verify), hashlib.sha256(data).hexdigest()
+        tree = ObbTree.from_bytes(data, name, verify=verify)
+        return tree, digest_of(data)() if hashed else None
     is_known = suffix is not None and suffix.lower() in known_suffixes()
-    mesh = load_mesh_bytes(data, suffix if is_known else None, name=name)
+    mesh = load_mesh_bytes(data, suffix if is_known else None, name=name, hashed=hashed)
     return mesh, mesh.sha256
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TextIO
 
 from obbcli.cli.boundary import OutputError, writing, writing_stdout
 from obbcli.files import write_whole
-from obbcli.report.document import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -37,6 +36,8 @@ def emit(
         OutputError: it cannot be written.
     """
     if common.json:
+        from obbcli.report.document import to_json
+
         text = to_json(record)
     elif common.quiet and bare is not None:
         text = bare(record)

@@ -7,6 +7,6 @@ from __future__ import annotations
 
 from obbcli.mesh.load import known_suffixes, load_mesh, load_mesh_bytes
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import check_file
+from obbcli.mesh.source import check_file, digest_of
 
-__all__ = ["Mesh", "check_file", "known_suffixes", "load_mesh", "load_mesh_bytes"]
+__all__ = ["Mesh", "check_file", "digest_of", "known_suffixes", "load_mesh", "load_mesh_bytes"]

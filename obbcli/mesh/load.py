@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
 from obbcli.mesh.mesh import Mesh
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
     from obbcli.mesh.source import MeshArrays
 
 
-@dataclass(frozen=True)
-class _Format:
+class _Format(NamedTuple):
     """Holds a format's name and reader.
 
     Args:
@@ -79,11 +77,16 @@ def known_suffixes() -> tuple[str, ...]:
     return tuple(sorted(_FORMATS))
 
 
-def load_mesh(path: str | os.PathLike[str]) -> Mesh:
+def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     """Return the mesh in a file: its suffix, in any case, says which format is expected.
 
     Triangle ids are rows of the file's faces after triangulation, in the file's order; polygons
     become fans about their first corner, cells the faces that `boundary.surface` lists.
+
+    Args:
+        path: the file.
+        hashed: whether the mesh's `sha256` is found, which for a large file costs as much time as
+            to read it.
 
     Raises:
         MeshError: it cannot be read, is not what its name says, or holds no usable surface.
@@ -92,10 +95,12 @@ def load_mesh(path: str | os.PathLike[str]) -> Mesh:
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)
     read = _reader(str(path), path.suffix)
-    return _load(read_source(path), path.suffix, read)
+    return _load(read_source(path), path.suffix, read, hashed=hashed)
 
 
-def load_mesh_bytes(data: bytes, suffix: str | None = None, *, name: str = "<stdin>") -> Mesh:
+def load_mesh_bytes(
+    data: bytes, suffix: str | None = None, *, name: str = "<stdin>", hashed: bool = True
+) -> Mesh:
     """Return the mesh in `data`, which is what a file with `suffix` would hold.
 
     Without a suffix the beginning must say what it is: STL, OBJ, PLY, OFF, GLB, VTK, VTU and Gmsh
@@ -111,7 +116,7 @@ def load_mesh_bytes(data: bytes, suffix: str | None = None, *, name: str = "<std
         if suffix is None:
             fault = f"is {found[1]}" if found else "does not begin as any known format does"
             raise source.error(fault, "put it into a file whose suffix tells its format")
-    return _load(source, suffix, _reader(name, suffix))
+    return _load(source, suffix, _reader(name, suffix), hashed=hashed)
 
 
 def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
@@ -129,8 +134,10 @@ def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
     return reader
 
 
-def _load(source: Source, suffix: str, read: Callable[[Source], MeshArrays]) -> Mesh:
-    digest = digest_of(source.data)
+def _load(
+    source: Source, suffix: str, read: Callable[[Source], MeshArrays], *, hashed: bool
+) -> Mesh:
+    digest = digest_of(source.data) if hashed else None
     try:
         vertices, triangles = read(source)
         if len(triangles) == 0:
@@ -140,7 +147,7 @@ def _load(source: Source, suffix: str, read: Callable[[Source], MeshArrays]) -> 
     except MemoryError as fault:
         raise source.error("does not fit into memory") from fault
     finally:
-        sha256 = digest()
+        sha256 = None if digest is None else digest()
     # Read-only arrays are adopted, not copied.
     vertices.setflags(write=False)
     triangles.setflags(write=False)

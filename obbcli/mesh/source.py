@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import stat
-import threading
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
 
@@ -25,8 +22,7 @@ if TYPE_CHECKING:
 _THREAD_FROM = 1 << 20
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(NamedTuple):
     """Holds what was read, once: readers parse these bytes and the digest is of these bytes.
 
     Args:
@@ -111,6 +107,10 @@ def digest_of(data: bytes) -> Callable[[], str]:
     parsed: a later look at the file could find another one. The caller must wait before it returns,
     so that no thread outlives a load and no bytes are kept.
     """
+    # Imported where it is needed: start-up counts, and few who ask questions look at digests.
+    import hashlib
+    import threading
+
     if len(data) < _THREAD_FROM:
         return hashlib.sha256(data).hexdigest
     digest = hashlib.sha256()

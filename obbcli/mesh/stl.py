@@ -32,10 +32,10 @@ _FACET: tuple[bytes | None, ...] = (
 #: Where in a facet the corners' numbers stand; the normal's are never used and may be anything.
 _COORDINATES = [k for k, word in enumerate(_FACET) if word is None and k > 4]
 #: Begins with letters, which `re` looks for many times as fast as for line starts.
-_TITLE = re.compile(rb"solid(?![^\s])[^\r\n]*")
-_STARTS_SOLID = re.compile(rb"\s*solid\b", re.IGNORECASE)
+_TITLE = rb"solid(?![^\s])[^\r\n]*"
+_STARTS_SOLID = rb"(?i)\s*solid\b"
 #: Bytes no text has; a header is padded with NULs more often than not.
-_BINARY_BYTES = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
+_BINARY_BYTES = rb"[\x00-\x08\x0e-\x1f\x7f]"
 
 
 def read_stl(source: Source) -> MeshArrays:
@@ -48,7 +48,7 @@ def read_stl(source: Source) -> MeshArrays:
     if is_binary_stl(data):
         return _read_binary(data)
     text = strip_mark(data)
-    if _STARTS_SOLID.match(text) and not _BINARY_BYTES.search(text[: 2 * HEADER_SIZE]):
+    if re.match(_STARTS_SOLID, text) and not re.search(_BINARY_BYTES, text[: 2 * HEADER_SIZE]):
         return _read_ascii(source, text)
     raise _not_binary(source)
 
@@ -128,7 +128,7 @@ def _without_titles(text: bytes) -> bytes | None:
     pieces = []
     position = 0
     word = b""
-    for match in _TITLE.finditer(text):
+    for match in re.finditer(_TITLE, text):
         start = match.start()
         ends = text[start - 3 : start] == b"end"
         start -= 3 * ends

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from obbcli.report.record import answer_document
 from obbcli.report.table import Table, count, length, seconds
-from obbcli.results import Status
+from obbcli.verdict import Status
 
 if TYPE_CHECKING:
     from numpy import int64

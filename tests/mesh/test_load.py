@@ -42,6 +42,7 @@ def test_load_mesh_hashes_large_files_right(tmp_path):
     path.write_bytes(data)
 
     assert load_mesh(path).sha256 == hashlib.sha256(data).hexdigest()
+    assert load_mesh(path, hashed=False).sha256 is None
 
 
 def test_load_mesh_bytes_reads_what_a_file_would_hold():
