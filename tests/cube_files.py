@@ -6,6 +6,8 @@ import struct
 from itertools import product
 from typing import TYPE_CHECKING
 
+from oracles import triangles_intersect
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -18,6 +20,15 @@ def cube(shift: Sequence[float] = (0, 0, 0)) -> list[tuple[float, ...]]:
     """Return the corners of the unit cube, shifted."""
     corners = [(x, y, z) for z, y, x in product((0.0, 1.0), repeat=3)]
     return [tuple(p + s for p, s in zip(corner, shift, strict=True)) for corner in corners]
+
+
+def all_pairs(shift: tuple[float, float, float]) -> list[list[int]]:
+    """Return the pairs of triangles of two cubes that meet, by exact arithmetic."""
+    a, b = cube(), cube(shift)
+    corners_a = [[a[i] for i in face] for face in CUBE_FACES]
+    corners_b = [[b[i] for i in face] for face in CUBE_FACES]
+    pairs = product(enumerate(corners_a), enumerate(corners_b))
+    return [[i, j] for (i, p), (j, q) in pairs if triangles_intersect(p, q)]
 
 
 def obj(corners: Sequence[Sequence[float]]) -> str:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from obbcli import __version__
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs, read_pair
 from obbcli.cli.options import CommonOptions, common_options, gathered, option, verify_option
@@ -119,20 +118,6 @@ def about_two(exit_code: str) -> Decorator:
 _LOOK = 0.1
 
 
-def refuse_unanswered(asked: Iterable[tuple[str, Any, str]]) -> None:
-    """Refuse what this version cannot answer: to ignore it would make the answer a lie.
-
-    Args:
-        asked: what, whether it was asked for, and what to do instead.
-
-    Raises:
-        UsageError: one of them was.
-    """
-    for what, is_asked, remedy in asked:
-        if is_asked:
-            raise UsageError(what, f"not answered by version {__version__} yet", remedy)
-
-
 def run(query: Query, accuracy: Accuracy, *, progress: bool) -> FirstContact:
     """Advance a query to its end or to a limit of `accuracy`, and return its answer.
 
@@ -197,6 +182,9 @@ def exit_code(result: Record, *, asked: bool) -> int:
     Who asks takes 0 for proof, which samples do not give.
     """
     is_separated = result["status"] == "separated"
-    if result["status"] == "unresolved" or (asked and is_separated and result["approximate"]):
+    is_open = result["status"] == "unresolved" or (
+        result.get("contacts_unresolved_after") is not None
+    )
+    if is_open or (asked and is_separated and result["approximate"]):
         return ExitCode.UNRESOLVED
     return ExitCode.CONTACT if asked and not is_separated else ExitCode.ANSWERED

@@ -6,10 +6,12 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from obbcli.report.collide import as_sampled, contained_rows, cost_rows, source_rows, why_open
+from obbcli.report.contacts import contacts_bare, contacts_part, contacts_table
 from obbcli.report.record import answer_document
 from obbcli.report.table import Table, length, point
 
 if TYPE_CHECKING:
+    from obbcli.report.contacts import Listing
     from obbcli.report.record import Record, Setting
     from obbcli.results import FirstContact
 
@@ -19,21 +21,26 @@ _AT_HI = {
 }
 
 
-def first_contact_record(setting: Setting, answer: FirstContact) -> Record:
+def first_contact_record(
+    setting: Setting, answer: FirstContact, listing: Listing | None = None
+) -> Record:
     """Return the record of a question.
 
     Args:
         setting: what was asked.
         answer: what came out; its fields become the result, but for the stats.
+        listing: the contacts of pairs; None where they were not asked for.
     """
     values = {field.name: getattr(answer, field.name) for field in fields(answer)}
     stats = values.pop("stats")
     result = values | {"status": answer.status.value}
+    if listing is not None:
+        result |= contacts_part(listing)
     return answer_document("first-contact", setting, result, stats)
 
 
 def first_contact_tables(record: Record) -> list[Table]:
-    """Return the table of a record."""
+    """Return the tables of a record: the answer, and the list where it was asked for."""
     result = record["result"]
     rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
     rows += contained_rows(result)
@@ -46,16 +53,17 @@ def first_contact_tables(record: Record) -> list[Table]:
         # Triangles that overlap from the start need not meet in any one way.
         way = f" ({result['feature']})" if result["feature"] else ""
         rows.append(("triangles", f"{a} of A and {b} of B{way}"))
-    return [Table([*rows[:4], *_bracket(result), *rows[4:], *cost_rows(record["stats"])])]
+    rows = [*rows[:4], *_bracket(result), *rows[4:], *cost_rows(record["stats"])]
+    return [Table(rows), *([contacts_table(result)] if "contacts" in result else [])]
 
 
 def first_contact_bare(record: Record) -> str:
-    """Return the status word and, where there is one, the time."""
+    """Return the list where it was asked for, else the status word and, if any, the time."""
     result = record["result"]
-    return (
-        " ".join([result["status"], *([] if result["time"] is None else [repr(result["time"])])])
-        + "\n"
-    )
+    if "contacts" in result:
+        return contacts_bare(result)
+    time = "" if result["time"] is None else f" {result['time']!r}"
+    return f"{result['status']}{time}\n"
 
 
 def _sentence(record: Record) -> str:

@@ -10,8 +10,7 @@ import sys
 from itertools import product
 
 import pytest
-from cube_files import CUBE_FACES, cube, obj, stl
-from oracles import triangles_intersect
+from cube_files import all_pairs, cube, obj, stl
 
 from obbcli import Accuracy, __version__
 
@@ -21,15 +20,6 @@ KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "solid", "resu
 def pipe_in(monkeypatch: pytest.MonkeyPatch, data: bytes) -> None:
     """Let standard input hold `data`."""
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
-
-
-def all_pairs(shift: tuple[float, float, float]) -> list[list[int]]:
-    """Return the pairs of triangles of two cubes that meet, by exact arithmetic."""
-    a, b = cube(), cube(shift)
-    corners_a = [[a[i] for i in face] for face in CUBE_FACES]
-    corners_b = [[b[i] for i in face] for face in CUBE_FACES]
-    pairs = product(enumerate(corners_a), enumerate(corners_b))
-    return [[i, j] for (i, p), (j, q) in pairs if triangles_intersect(p, q)]
 
 
 def test_collide_says_that_touching_cubes_touch(here, obbtree):

@@ -181,22 +181,6 @@ def test_first_contact_table_says_what_is_proven(here, obbtree, other, words, te
 
 
 @pytest.mark.parametrize(
-    "words",
-    [
-        ("--all-contacts",),
-        ("--all-contacts", "--limit", "3"),
-        ("--limit", "3"),
-    ],
-)
-def test_first_contact_never_ignores_what_it_cannot_answer_yet(here, obbtree, words):
-    ended = obbtree("first-contact", "cube.stl", "apart.obj", "--vel", 1, 0, 0, *words)
-
-    assert ended.code == 2
-    assert ended.out == ""
-    assert "not answered by version" in ended.err
-
-
-@pytest.mark.parametrize(
     ("words", "fault"),
     [
         (("--pivot", "0", "0", "0", "--vel", "1", "0", "0"), "add --omega"),

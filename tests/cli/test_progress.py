@@ -115,3 +115,14 @@ def test_bar_changes_no_answer(monkeypatch, obbtree):
 
     assert plain["result"]["status"] == "unresolved"
     assert watched["result"] == plain["result"]
+
+
+def test_long_list_shows_the_time_before_which_it_is_known(monkeypatch, obbtree):
+    monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
+    monkeypatch.setattr("obbcli.search.POPS_A_SLICE", 1024)
+
+    with redirect_stderr(Terminal()) as terminal:
+        listed = obbtree("first-contact", *GEARS, *TURNING, "--all-contacts")
+
+    assert listed.code == 0
+    assert "all contacts known before t = 0.0" in terminal.getvalue()
