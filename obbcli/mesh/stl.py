@@ -6,6 +6,7 @@ binary header too. Libraries wrap counts, return empty meshes for truncated file
 
 from __future__ import annotations
 
+import os
 import re
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from obbcli.mesh.text import all_numbers, number, strip_mark
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
 HEADER_SIZE = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: Half a megabyte or so.
+_RECORDS_A_PIECE = 10_000
 
 #: The 21 words of a facet; None stands for a number.
 _FACET: tuple[bytes | None, ...] = (
@@ -51,6 +56,34 @@ def read_stl(source: Source) -> MeshArrays:
     if re.match(_STARTS_SOLID, text) and not re.search(_BINARY_BYTES, text[: 2 * HEADER_SIZE]):
         return _read_ascii(source, text)
     raise _not_binary(source)
+
+
+def read_binary_file(path: Path) -> MeshArrays | None:
+    """Return what `read_stl` would of a binary STL file, or None where that must look at it whole.
+
+    Piece by piece, which takes half the time and memory: the pieces stay in the processor's cache.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    with path.open("rb", buffering=0) as file:
+        head = file.read(HEADER_SIZE)
+        size = os.fstat(file.fileno()).st_size
+        count = _claimed(head)
+        if count == 0 or size != HEADER_SIZE + RECORD.itemsize * count:
+            return None
+        vertices = np.empty((3 * count, 3))
+        corners = vertices.reshape(-1, 3, 3)
+        records = np.empty(min(count, _RECORDS_A_PIECE), RECORD)
+        piece = records.view(np.uint8).data
+        for start in range(0, count, _RECORDS_A_PIECE):
+            wanted = min(count - start, _RECORDS_A_PIECE)
+            length = wanted * RECORD.itemsize
+            if file.readinto(piece[:length]) != length:
+                return None  # it was cut short meanwhile
+            with np.errstate(invalid="ignore"):  # a signalling NaN is refused later, by name
+                corners[start : start + wanted] = records["corners"][:wanted]
+    return vertices, _in_threes(count)
 
 
 def is_binary_stl(data: bytes) -> bool:

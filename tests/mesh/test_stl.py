@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import struct
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -48,6 +50,56 @@ def test_binary_stl_keeps_the_float32_values_exactly():
     assert mesh.vertices[0, 0] == value
     assert mesh.vertices[1, 0] == float(np.float32(1e38))
     assert mesh.vertices[2, 1] == float(np.float32(1e-45))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6, 7])
+def test_binary_stl_file_reads_the_same_piece_by_piece_and_whole(tmp_path, monkeypatch, count):
+    monkeypatch.setattr(stl_module, "_RECORDS_A_PIECE", 3)
+    facets = np.random.default_rng(count).normal(size=(count, 3, 3)).astype(np.float32)
+    path = tmp_path / "part.stl"
+    path.write_bytes(binary_stl(*facets))
+
+    pieces, whole = load_mesh(path, hashed=False), load_mesh(path)
+
+    assert pieces.vertices.tolist() == whole.vertices.tolist() == facets.reshape(-1, 3).tolist()
+    assert pieces.triangles.tolist() == whole.triangles.tolist()
+    assert (pieces.source, pieces.sha256) == ("part.stl", None)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"solid",
+        bytes(84),
+        ASCII,
+        binary_stl(FIRST, count=2),
+        binary_stl(FIRST, tail=b"\n"),
+        binary_stl(FIRST, [[0.0, 0, float("nan")], *SECOND[1:]]),
+        bytes(80) + struct.pack("<I12IH", 1, *[0x7FA00000] * 12, 0),
+    ],
+)
+def test_stl_files_say_the_same_hashed_or_not(tmp_path, data):
+    path = tmp_path / "part.stl"
+    path.write_bytes(data)
+
+    def said(**options):
+        try:
+            return load_mesh(path, **options).vertices.tolist()
+        except MeshError as fault:
+            return str(fault)
+
+    assert said(hashed=False) == said(hashed=True)
+
+
+def test_binary_stl_file_that_shrinks_while_it_is_read_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "part.stl"
+    path.write_bytes(binary_stl(FIRST, SECOND, count=3))
+    whole = os.stat_result((0o100644, 0, 0, 1, 0, 0, 84 + 3 * 50, 0, 0, 0))
+    monkeypatch.setattr(stl_module, "os", SimpleNamespace(fstat=lambda _: whole))
+
+    with pytest.raises(MeshError, match="the file has 184"):
+        load_mesh(path, hashed=False)
 
 
 def test_binary_stl_ignores_normals_that_are_not_finite():
