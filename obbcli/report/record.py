@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
-    from obbcli.motion import Body
+    from obbcli.motion import Body, Pose
     from obbcli.results import QueryStats
 
 Record: TypeAlias = dict[str, Any]
@@ -81,30 +81,39 @@ def answer_document(command: str, setting: Setting, result: Record, stats: Query
 
 
 def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
-    """Return the motion as understood: poses and pivots in world coordinates.
+    """Return the motion as understood: poses and pivots in world coordinates, or paths.
 
     Args:
         bodies: A and B; their shapes are trees or meshes.
         duration: s; None for the default.
     """
-    if duration is None:
-        duration = 0.0 if all(body.motion.is_at_rest for body in bodies) else 1.0
+    from obbcli.question import duration_of
+
     a, b = bodies
-    return {"duration": float(duration), "a": _body_part(a), "b": _body_part(b)}
+    return {"duration": duration_of(duration, bodies), "a": _body_part(a), "b": _body_part(b)}
 
 
 def _body_part(body: Body) -> Record:
+    from obbcli.motion import PathMotion
+
     pose, motion = body.pose, body.motion
+    if isinstance(motion, PathMotion):
+        poses = [_pose_part(through) for through in motion.poses]
+        return {"pose": poses[0], "times": motion.times.tolist(), "poses": poses}
     pivot = motion.pivot
     if pivot is None:
         assert not isinstance(body.shape, (str, PathLike))
         pivot = pose.apply(body.shape.surface_centroid[None])[0]
     return {
-        "pose": {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()},
+        "pose": _pose_part(pose),
         "linear_velocity": motion.linear_velocity.tolist(),
         "angular_velocity": motion.angular_velocity.tolist(),
         "pivot": pivot.tolist(),
     }
+
+
+def _pose_part(pose: Pose) -> Record:
+    return {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()}
 
 
 def stats_part(stats: QueryStats) -> Record:

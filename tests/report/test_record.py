@@ -43,6 +43,21 @@ def test_motion_reports_a_given_pivot_as_it_is():
     assert motion_part((body, body), 2)["a"]["pivot"] == [5.0, 6.0, 7.0]
 
 
+def test_motion_reports_a_path_as_its_poses():
+    poses = [Pose(translation=(0, 0, 1)), Pose((0, 0, math.pi / 2), (2, 0, 0))]
+    body = Body(SQUARE, motion=Motion.through([0, 2.5], poses))
+
+    part = motion_part((body, Body(SQUARE)), None)
+
+    first, last = (
+        {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()}
+        for pose in poses
+    )
+    assert part["a"] == {"pose": first, "times": [0.0, 2.5], "poses": [first, last]}
+    assert part["duration"] == 2.5
+    assert json.loads(to_json(part)) == part
+
+
 @pytest.mark.parametrize(
     ("velocity", "duration", "used"),
     [((0, 0, 0), None, 0.0), ((0, 1, 0), None, 1.0), ((0, 1, 0), 3, 3.0), ((0, 0, 0), 3, 3.0)],
