@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from obbcli.relay import Asker, Counts, Relay
 
 _EXACT = Accuracy()
+_SEPARATED = Contact(status=Status.SEPARATED)
 
 
 class Query:
@@ -79,13 +80,16 @@ class Query:
     ) -> None:
         self._accuracy = _EXACT if accuracy is None else accuracy
         self._bodies = as_body(a), as_body(b)
+        self._follows_path = any(isinstance(body.motion, PathMotion) for body in self._bodies)
         self._duration = duration_of(duration, self._bodies)
         self._seconds = {"load": 0.0, "query": 0.0}
         start = time.perf_counter()
         self._trees = trees_of(self._bodies)
         self._seconds["load"] = time.perf_counter() - start
         start = time.perf_counter()
-        placed = next(legs_of(self._bodies, self._trees, 0.0)).bodies
+        placed = self._bodies
+        if self._follows_path:
+            placed = next(legs_of(self._bodies, self._trees, 0.0)).bodies
         self._at_start = static_query(self._trees, placed, self._accuracy)
         self._solids = Containment(placed, self._trees, self._at_start) if solid else None
         self._seconds["query"] = time.perf_counter() - start
@@ -97,13 +101,13 @@ class Query:
     def _relay(self, ask: Asker) -> Relay | None:
         """Return what asks one question after another, where one is not enough."""
         bodies, end = self._bodies, self._duration
-        moves = end > 0 and not all(body.motion.is_at_rest for body in bodies)
-        if self._accuracy.method == "sampled" and moves:
+        is_sampled = self._accuracy.method == "sampled" and end > 0
+        if is_sampled and not all(body.motion.is_at_rest for body in bodies):
             accuracy = replace(
                 self._accuracy, time_tolerance=time_tolerance(self._accuracy, self._duration)
             )
             return SampledQueries(bodies, self._trees, end, accuracy, ask)
-        if not any(isinstance(body.motion, PathMotion) for body in bodies):
+        if not self._follows_path:
             return None
         # A bracket may consist of two: of the time the bodies are near, and of contact.
         exact = replace(
@@ -217,7 +221,7 @@ class Query:
             return unresolved(self.lower_bound)
         found = None if self._moving is None else self._moving.contact()
         if self._moving is None or found is None:
-            return Contact(status=Status.SEPARATED)
+            return _SEPARATED
         return contact_of(self._moving, found, self._accuracy.clearance)
 
     def _boxes_at_start(self) -> Contact:
@@ -232,11 +236,12 @@ class Query:
 
     def _counts(self) -> Counts:
         """Box tests, triangle tests, exact ones and pops so far."""
-        moving = (0, 0, 0, 0) if self._moving is None else self._moving.counts()
+        counts = self._at_start.counts()
+        if self._solids is not None:
+            counts = sum_of(counts, self._solids.counts)
         if self._legs is not None:
-            moving = self._legs.counts
-        inside = (0, 0, 0, 0) if self._solids is None else self._solids.counts
-        return sum_of(self._at_start.counts(), sum_of(moving, inside))
+            return sum_of(counts, self._legs.counts)
+        return counts if self._moving is None else sum_of(counts, self._moving.counts())
 
     def _stats(self) -> QueryStats:
         return stats_of(self._trees, self._counts(), dict(self._seconds))

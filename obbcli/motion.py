@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
@@ -59,6 +60,7 @@ class Motion:
         angular_velocity: float64 (3,), read-only.
         pivot: float64 (3,), read-only, or None.
         is_at_rest: whether neither velocity moves anything.
+        is_turning: whether there is an angular velocity.
 
     Raises:
         MotionError: not three finite numbers.
@@ -68,6 +70,7 @@ class Motion:
     angular_velocity: NDArray[np.float64]
     pivot: NDArray[np.float64] | None
     is_at_rest: bool
+    is_turning: bool
 
     def __init__(
         self,
@@ -81,7 +84,14 @@ class Motion:
         object.__setattr__(self, "linear_velocity", velocity)
         object.__setattr__(self, "angular_velocity", spin)
         object.__setattr__(self, "pivot", point)
-        object.__setattr__(self, "is_at_rest", not (velocity.any() or spin.any()))
+        is_turning = bool(spin.any())
+        object.__setattr__(self, "is_at_rest", not (is_turning or velocity.any()))
+        object.__setattr__(self, "is_turning", is_turning)
+
+    @cached_property
+    def velocities(self) -> tuple[list[float], list[float]]:
+        """Linear and angular velocity as plain numbers."""
+        return self.linear_velocity.tolist(), self.angular_velocity.tolist()
 
     @staticmethod
     def through(times: ArrayLike, poses: Sequence[Pose]) -> PathMotion:
@@ -123,7 +133,7 @@ class Motion:
         start = _AS_LOADED if pose is None else pose
         if self.is_at_rest or time == 0:
             return start
-        turns = bool(self.angular_velocity.any())
+        turns = self.is_turning
         center = self.pivot if self.pivot is not None or pivot is None else pivot
         if turns and center is None:
             raise MotionError(
@@ -284,8 +294,11 @@ class Body:
             _refuse("motion", motion, "pass a Motion")
         if isinstance(motion, PathMotion):
             pose = motion.first_pose(pose)
-        # The dataclass is frozen to everybody else, and one update is cheaper than three of them.
-        vars(self).update(shape=shape, pose=pose, motion=motion)
+        # The dataclass is frozen to everybody else, and its own way takes three times as long.
+        fields = vars(self)
+        fields["shape"] = shape
+        fields["pose"] = pose
+        fields["motion"] = motion
 
 
 def as_body(shape: Body | Shape) -> Body:

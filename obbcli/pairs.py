@@ -211,7 +211,7 @@ def _triangle(body: Body, tree: ObbTree, row: int) -> Body:
     """Return a body of one triangle of another, with the same motion."""
     mesh = Mesh(tree.vertices[tree.mesh.triangles[row]], [[0, 1, 2]])
     motion = body.motion
-    if not isinstance(motion, PathMotion) and motion.angular_velocity.any():
+    if not isinstance(motion, PathMotion) and motion.is_turning:
         pivot = pivot_of(body, tree)
         motion = Motion(motion.linear_velocity, motion.angular_velocity, pivot)
     return Body(ObbTree.build(mesh), pose=body.pose, motion=motion)

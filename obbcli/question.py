@@ -28,6 +28,7 @@ _NO_DEPTH_LIMIT = 2**32 - 1
 # Of the duration: the width asked of a bracket where the caller asks for none.
 _TIME_TOLERANCE = 1e-9
 NO_LIMIT = 2**64 - 1
+_ORIGIN = (0.0, 0.0, 0.0)
 # Queue pops between two looks at clock and signals: a few milliseconds.
 POPS_A_SLICE = 16_384
 
@@ -42,9 +43,11 @@ def trees_of(bodies: tuple[Body, Body]) -> Trees:
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
-    a, b = bodies
-    tree_a = _tree(a.shape)
-    return tree_a, tree_a if b.shape is a.shape else _tree(b.shape)
+    a, b = bodies[0].shape, bodies[1].shape
+    if isinstance(a, ObbTree) and isinstance(b, ObbTree):
+        return a, b
+    tree = _tree(a)
+    return tree, tree if b is a else _tree(b)
 
 
 def _tree(shape: Shape) -> ObbTree:
@@ -133,15 +136,8 @@ def stats_of(
         counts: box tests, triangle tests, exact ones, pops.
         seconds: s of wall time by stage.
     """
-    a, b = trees
-    return QueryStats(
-        *counts,
-        a.node_count,
-        b.node_count,
-        a.possible_node_count,
-        b.possible_node_count,
-        seconds,
-    )
+    (built_a, possible_a), (built_b, possible_b) = trees[0].node_counts(), trees[1].node_counts()
+    return QueryStats(*counts, built_a, built_b, possible_a, possible_b, seconds)
 
 
 def refused(trees: Trees, fault: ValueError | kernels.TreeError) -> ObbError:
@@ -216,21 +212,20 @@ def moves_nothing(bodies: tuple[Body, Body], trees: Trees, duration: float) -> b
     ma, mb = a.motion, b.motion
     if duration == 0 or (ma.is_at_rest and mb.is_at_rest):
         return True
+    if ma.is_at_rest or mb.is_at_rest:
+        return False
     if (ma.linear_velocity != mb.linear_velocity).any() or (
         ma.angular_velocity != mb.angular_velocity
     ).any():
         return False
-    is_turning = bool(ma.angular_velocity.any())
-    return not is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
+    return not ma.is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
 
 
 def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
     motion = body.motion
     # A body that does not turn has no use for a pivot, nor for the pass over its mesh to find one.
-    pivot = pivot_of(body, tree).tolist() if motion.angular_velocity.any() else (0.0, 0.0, 0.0)
-    return kernels.Screw(
-        motion.linear_velocity.tolist(), motion.angular_velocity.tolist(), tuple(pivot)
-    )
+    pivot = pivot_of(body, tree).tolist() if motion.is_turning else _ORIGIN
+    return kernels.Screw(*motion.velocities, pivot)
 
 
 def whole_limit(limit: int) -> int:

@@ -92,7 +92,7 @@ def _turns(motion: Motion) -> bool:
     """Return whether a motion has to be sampled at all."""
     if isinstance(motion, PathMotion):
         return not motion.is_at_rest
-    return bool(motion.angular_velocity.any())
+    return motion.is_turning
 
 
 def _step_of(body: Body, tree: ObbTree, integrator: str) -> Step:

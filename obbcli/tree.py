@@ -48,7 +48,8 @@ class ObbTree:
     def __init__(self, made: treefile.TreeArrays | Growth, path: Path | None = None) -> None:
         self._made = made
         self._path = path
-        self._kernel = made.kernel if isinstance(made, Growth) else self._kernel_of(made)
+        # What questions ask; no property, as these cost more than a test of two boxes.
+        self.kernel = made.kernel if isinstance(made, Growth) else self._kernel_of(made)
 
     def _kernel_of(self, arrays: treefile.TreeArrays) -> kernels.Tree:
         try:
@@ -171,11 +172,6 @@ class ObbTree:
         return self._made.arrays() if isinstance(self._made, Growth) else self._made
 
     @property
-    def kernel(self) -> kernels.Tree:
-        """The arrays as the kernels see them."""
-        return self._kernel
-
-    @property
     def vertices(self) -> NDArray[np.float64]:
         """Vertices as the mesh has them, float64 (V, 3), read-only."""
         return self.mesh.vertices if isinstance(self._made, Growth) else self._made.vertices
@@ -230,8 +226,7 @@ class ObbTree:
     @property
     def node_count(self) -> int:
         """How many boxes there are by now; a single triangle needs none."""
-        made = self._made
-        return made.node_count if isinstance(made, Growth) else len(made.nodes)
+        return self.node_counts()[0]
 
     @property
     def possible_node_count(self) -> int:
@@ -239,15 +234,22 @@ class ObbTree:
 
         Until it is, with `split="center"` and a limit on leaves or depth, how many it has at most.
         """
+        return self.node_counts()[1]
+
+    def node_counts(self) -> tuple[int, int]:
+        """Return `node_count` and `possible_node_count`, for those who count in microseconds."""
         made = self._made
-        return made.possible_node_count if isinstance(made, Growth) else len(made.nodes)
+        if isinstance(made, Growth):
+            return made.node_count, made.possible_node_count
+        count = len(made.nodes)
+        return count, count
 
     @cached_property
     def levels(self) -> tuple[Level, ...]:
         """What stands at each depth, the root's first; nodes not reached yet are made first."""
         cube = 3 * self._arrays.scale_exponent
         try:
-            found = self._kernel.levels()
+            found = self.kernel.levels()
         except kernels.TreeError as fault:
             raise TreeFileError(self._where, str(fault), "build it again") from fault
         return tuple(
