@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, get_args
@@ -82,6 +81,8 @@ class Growth:
         self.kernel = self._builder.tree()
         self._lock = Lock()
         self._arrays: TreeArrays | None = None
+        # How many boxes the whole tree has; while the center rule leaves that open, at most.
+        self.possible_node_count = _possible_nodes(len(mesh.triangles), split, leaf_size, max_depth)
 
     def arrays(self, progress: Callable[[float], object] | None = None) -> TreeArrays:
         """Make what is missing, and return the whole tree as arrays.
@@ -106,22 +107,13 @@ class Growth:
                 scale_exponent=self._builder.scale_exponent,
                 description=self.description,
             )
+            self.possible_node_count = len(nodes)
             return self._arrays
 
     @property
     def node_count(self) -> int:
         """How many boxes there are so far."""
         return self._builder.node_count
-
-    @property
-    def possible_node_count(self) -> int:
-        """How many boxes the whole tree has; while the center rule leaves that open, at most."""
-        return self._possible if self._arrays is None else len(self._arrays.nodes)
-
-    @cached_property
-    def _possible(self) -> int:
-        d = self.description
-        return _possible_nodes(len(self.mesh.triangles), d.split, d.leaf_size, d.max_depth)
 
     @property
     def nbytes(self) -> int:
