@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.motion import Body, Motion, PathMotion
+from obbcli.motion import Body, Motion, PathMotion, is_same_pose
 from obbcli.question import pivot_of
 from obbcli.relay import Leg, Relay, length_of
 from obbcli.results import FirstContact, Status
@@ -87,9 +87,12 @@ def jump_at(body: Body, tree: ObbTree, time: float) -> float:
     if not isinstance(motion, PathMotion):
         return 0.0
     index = motion.index_at(time)
-    if index < 1 or motion.times[index] != time or motion.piece(index - 1).is_at_rest:
+    if index < 1 or motion.times[index] != time:
         return 0.0
     here, there = motion.poses[index - 1 : index + 1]
+    # No velocity tells of poses that differ by what no motion makes of each other.
+    if is_same_pose(here, there):
+        return 0.0
     end = motion.piece(index - 1).pose_at(time - float(motion.times[index - 1]), here)
     return _apart(tree, end, there) + rounding_of(tree, here.translation, there.translation)
 

@@ -183,7 +183,7 @@ class PathMotion(Motion):
         object.__setattr__(self, "poses", places)
         pieces = tuple(self._piece(k) for k in range(len(clock) - 1))
         object.__setattr__(self, "_pieces", pieces)
-        object.__setattr__(self, "is_at_rest", all(piece.is_at_rest for piece in pieces))
+        object.__setattr__(self, "is_at_rest", all(piece is _AT_REST for piece in pieces))
 
     _pieces: tuple[Motion, ...]
 
@@ -223,7 +223,7 @@ class PathMotion(Motion):
         Raises:
             MotionError: it is neither the identity nor the motion's first pose.
         """
-        if pose.is_identity or _is_same(pose, self.poses[0]):
+        if pose.is_identity or is_same_pose(pose, self.poses[0]):
             return self.poses[0]
         raise MotionError(
             "pose", "is given beside a motion through poses", "make it part of those poses"
@@ -231,7 +231,7 @@ class PathMotion(Motion):
 
     def _piece(self, index: int) -> Motion:
         here, there = self.poses[index : index + 2]
-        if _is_same(here, there):
+        if is_same_pose(here, there):
             return _AT_REST
         turn = np.zeros(3)
         if not np.array_equal(here.rotation, there.rotation):
@@ -247,7 +247,8 @@ class PathMotion(Motion):
         return Motion(velocity, spin, here.translation)
 
 
-def _is_same(a: Pose, b: Pose) -> bool:
+def is_same_pose(a: Pose, b: Pose) -> bool:
+    """Return whether two poses are the same, number by number."""
     return np.array_equal(a.rotation, b.rotation) and np.array_equal(a.translation, b.translation)
 
 

@@ -253,6 +253,17 @@ def test_poses_that_are_not_quite_rigid_cost_their_defect():
     assert answers[1].status is Status.SEPARATED
 
 
+def test_sheet_that_only_jumps_over_a_point_is_near_it():
+    # No turn makes a mesh longer: its far side is at 1 in the first pose, and 2e-10 further then.
+    longer = Pose(np.diag([1 + 2e-10, 1.0, 1.0]))
+    wall = Mesh([[1, -1, -1], [1, 1, -1], [1, 0, 2]], [[0, 1, 2]])
+    grows = Body(wall, motion=Motion.through([0, 1], [Pose(), longer]))
+    dust = Mesh([[1 + 1e-10, 0, 0]] * 3, [[0, 1, 2]])
+
+    assert not grows.motion.is_at_rest
+    assert_at(obbcli.first_contact(grows, dust), 0.0, 1e-9)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_query_goes_on_pop_by_pop_to_the_same_answer(seed: int):
     a, b = random_pair(seed)
