@@ -82,6 +82,16 @@ def test_every_frame_is_orthonormal_and_right_handed(
     assert np.linalg.det(frame) > 0
 
 
+@pytest.mark.parametrize(
+    ("step", "spin"), [(euler_step, (1e8, -3e8, 0.0)), (rk4_step, (30.0, 50.0, 0.0))]
+)
+def test_frame_stays_orthonormal_where_most_of_it_is_lost(step: Any, spin: tuple[float, ...]):
+    # The axis lies between the first two columns, which all but fall together.
+    frame = step(np.eye(3), np.array(spin), 1.0)
+
+    assert np.abs(frame.T @ frame - np.eye(3)).max() <= 8 * U
+
+
 @STEPS
 def test_no_spin_keeps_the_frame(step: Any):
     assert np.array_equal(step(np.eye(3), np.zeros(3), 1.0), np.eye(3))

@@ -229,6 +229,23 @@ def test_path_is_sampled_on_the_whole_clock():
     assert corner.error_bound > 3
 
 
+def test_bound_is_that_of_the_worst_step():
+    # Turns by an eighth in the first second of two; then the frame is as it should be again.
+    poses = [Pose(), Pose((0, 0, math.pi / 4))]
+    apart = Body(CUBE, Pose(translation=(9, 0, 0)))
+    rests = obbcli.first_contact(Body(CUBE, motion=Motion.through([0, 1], poses)), apart, 2.0,
+                                 sampled(2))  # fmt: skip
+    # Euler's frames drift further off with every step.
+    turn = Motion(None, (0.5, 0.7, 1.9))
+    first, last = (
+        obbcli.first_contact(Body(CUBE, motion=turn), apart, time, sampled(count, "euler"))
+        for time, count in ((0.1, 1), (5.0, 50))
+    )
+
+    assert rests.error_bound == pytest.approx(2 * math.sqrt(2) * math.sin(math.pi / 8))
+    assert last.error_bound > 2 * first.error_bound
+
+
 def test_only_steps_up_to_the_contact_are_asked():
     early = obbcli.first_contact(swing(), SHELF, 1.0, sampled(100))
     late = obbcli.first_contact(swing(), SHELF, 1e4, sampled(10**6))

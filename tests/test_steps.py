@@ -211,6 +211,38 @@ def test_corner_that_a_chord_cuts_is_counted():
     assert slacks[2] == pytest.approx([0, 1 / 3, 0], abs=1e-12)
 
 
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_poses_that_are_not_quite_rigid_are_counted(count: int):
+    # From one to the other, and back, the path jumps: no turn makes a cube a little longer.
+    crooked = Pose(np.eye(3) + 4e-10 * np.eye(3)[::-1])
+    motion = Motion.through([0, 1, 2], [Pose(), crooked, Pose()])
+
+    for leg in steps((Body(TREES[1], motion=motion), Body(TREES[0])), 2.0, count):
+        for time in (leg.start, 1.0, leg.start + leg.duration):
+            if leg.start <= time <= leg.start + leg.duration:
+                truth = motion.pose_at(time).apply(TREES[1].vertices)
+                off = modelled(leg.bodies[0], time - leg.start) - truth
+                assert np.linalg.norm(off, axis=1).max() <= leg.slack
+        assert leg.slack < 5e-9
+
+
+def test_several_turns_in_a_step_are_off_by_no_more_than_the_diameter():
+    poses = [Pose((3.0 * k, 0, 0)) for k in range(5)]
+    body = Body(TREES[1], motion=Motion.through(range(5), poses))
+
+    (leg,) = steps((body, Body(TREES[0])), 4.0, 1)
+
+    assert leg.slack == pytest.approx(2 * math.sqrt(3), rel=1e-7)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_integrated_frames_start_from_the_first_pose(integrator: str):
+    poses = [Pose((0.3, 0.5, 1.0)), Pose((0.4, 0.8, 1.1))]
+    body = Body(TREES[0], motion=Motion.through([0, 1], poses))
+
+    assert max(leg.slack for leg in steps((body, Body(TREES[1])), 1.0, 100, integrator)) < 0.03
+
+
 def test_frame_of_the_end_is_that_of_the_next_start():
     moving = screw(np.random.default_rng(3), 0.1).body
     assert isinstance(moving.shape, ObbTree)
