@@ -125,7 +125,13 @@ def _at_rest(
         raise refused(trees, fault) from fault
 
 
-def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -> NDArray[np.int64]:
+def triangle_pairs(
+    a: Body | Shape,
+    b: Body | Shape,
+    limit: int | None = None,
+    *,
+    threads: int | None = None,
+) -> NDArray[np.int64]:
     """Return every pair of triangles that intersect at t = 0, int64 (N, 2), sorted.
 
     Exact: the same pairs as testing all triangles against all others in rational arithmetic.
@@ -135,21 +141,29 @@ def triangle_pairs(a: Body | Shape, b: Body | Shape, limit: int | None = None) -
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
         b: likewise.
         limit: stop after so many pairs, and return those, sorted. Which ones depends on the trees.
+            One thread looks for them.
+        threads: at most so many; None: as many as this process may use cores. They change nothing
+            but the time it takes.
 
     Raises:
         MotionError: `limit` is no whole number of at least 1, or posed coordinates leave the range
             of double.
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
+        ObbError: `threads` is no positive integer.
         OSError: a file cannot be read.
     """
+    # Imported where it is needed: a yes or no answers without it.
+    from obbcli.cores import thread_count
+
+    workers = thread_count(threads)
     most = NO_LIMIT if limit is None else whole_limit(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
     (tree_a, tree_b), (body_a, body_b) = trees, bodies
     try:
         return kernels.triangle_pairs(
-            tree_a.kernel, body_a.pose.kernel, tree_b.kernel, body_b.pose.kernel, most
+            tree_a.kernel, body_a.pose.kernel, tree_b.kernel, body_b.pose.kernel, most, workers
         )
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault

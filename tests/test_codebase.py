@@ -21,7 +21,7 @@ LONGEST_FILE = 400
 
 # Each may import those of rows above it, and of its own row as long as no circle comes of it.
 LAYERS = (
-    ("errors", "arrays", "files"),
+    ("errors", "arrays", "files", "cores"),
     ("kernels",),
     (
         "mesh",

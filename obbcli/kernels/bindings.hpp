@@ -102,6 +102,26 @@ inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, doubl
     }
 }
 
+// Lets handlers of signals run every now and then, for work that goes on without the GIL: called
+// between its slices. Throws what a handler raised.
+class SignalWatch {
+  public:
+    void operator()() const {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - last_ < std::chrono::milliseconds(50)) {
+            return;
+        }
+        const nb::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) {
+            throw nb::python_error();
+        }
+        last_ = now;
+    }
+
+  private:
+    mutable std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 void bind_containment(nb::module_& m);
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);

@@ -56,7 +56,7 @@ void intersects(const Shapes& a, const Shapes& b, const Rows<double, 3>& velocit
     const obb::RepeatedMotion motion = motion_of(velocity_a, velocity_b, duration, count);
     with_shapes(a, b, count, [&](const auto& first, const auto& second) {
         nb::gil_scoped_release release;
-        obb::test_pairs(first, second, motion, threads, {verdicts.data(), count});
+        obb::test_pairs(first, second, motion, {threads, SignalWatch{}}, {verdicts.data(), count});
     });
 }
 
@@ -101,7 +101,7 @@ nb::dict first_contacts(const Shapes& a, const Shapes& b, const Rows<double, 3>&
     const obb::RepeatedMotion motion = motion_of(velocity_a, velocity_b, duration, count);
     obb::PairContacts found = with_shapes(a, b, count, [&](const auto& first, const auto& second) {
         nb::gil_scoped_release release;
-        return obb::first_contacts(first, second, motion, count, threads);
+        return obb::first_contacts(first, second, motion, count, {threads, SignalWatch{}});
     });
     const std::vector<PairContact>& all = found.contacts;
     nb::dict columns;

@@ -1,6 +1,7 @@
 // Questions about bodies at rest across the border.
 #include "bindings.hpp"
 
+#include "parallel.hpp"
 #include "static_query.hpp"
 
 #include <nanobind/stl/optional.h>
@@ -87,14 +88,34 @@ Collision collide(const Tree& a, const obb::Pose& pose_a, const Tree& b, const o
             counts_of(query)};
 }
 
+// Parts are several a thread, for they differ in size.
+void advance_in_parts(obb::StaticQuery& query, unsigned threads) {
+    constexpr std::size_t kPartsAThread = 16;
+    const nb::gil_scoped_release release;
+    std::vector<obb::StaticQuery> parts = query.divide(kPartsAThread * threads);
+    const SignalWatch watch;
+    obb::do_parts(
+        parts.size(), threads, [&](std::size_t k) { return parts[k].advance(kPopsASlice); }, watch);
+    query.join(parts);
+}
+
+// Which pairs a limit leaves depends on the order in which they are found: there, one thread works.
 Owned<std::int64_t, -1, 2> triangle_pairs(const Tree& a, const obb::Pose& pose_a, const Tree& b,
-                                          const obb::Pose& pose_b, std::uint64_t limit) {
+                                          const obb::Pose& pose_b, std::uint64_t limit,
+                                          unsigned threads) {
+    // Below so many pops, threads cost more than they save.
+    constexpr std::uint64_t kPopsAlone = 1024;
+    constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
     obb::StaticQueryOptions options;
     options.all_pairs = true;
     options.limit = limit;
     obb::StaticQuery query(a.view, pose_a, b.view, pose_b, options);
-    run(query, brief_pops(a, b), std::numeric_limits<std::uint64_t>::max(),
-        std::numeric_limits<double>::infinity());
+    const std::uint64_t brief = brief_pops(a, b);
+    if (threads < 2 || limit != kNoLimit) {
+        run(query, brief, kNoLimit, std::numeric_limits<double>::infinity());
+    } else if (!advance(query, brief, kPopsAlone)) {
+        advance_in_parts(query, threads);
+    }
     return pairs_of(query);
 }
 
@@ -105,7 +126,8 @@ void bind_static_query(nb::module_& m) {
 
     m.def("collide", &collide, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,
           "max_depth_a"_a, "max_depth_b"_a, "max_pops"_a, "seconds"_a);
-    m.def("triangle_pairs", &triangle_pairs, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "limit"_a);
+    m.def("triangle_pairs", &triangle_pairs, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "limit"_a,
+          "threads"_a);
 
     nb::class_<AtRest>(m, "StaticQuery")
         .def("__init__", &init_query, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,9 +38,16 @@ struct RepeatedMotion {
 inline constexpr std::uint8_t kMeets = 1;
 inline constexpr std::uint8_t kExact = 2;
 
+// Who does the work: at most so many threads. pause() is called between slices of it by the thread
+// that asks; what it throws ends the work.
+struct Crew {
+    unsigned threads;
+    std::function<void()> pause;
+};
+
 // Writes what is found of pair k to verdicts[k].
 template <typename A, typename B>
-void test_pairs(Repeated<A> a, Repeated<B> b, const RepeatedMotion& motion, unsigned threads,
+void test_pairs(Repeated<A> a, Repeated<B> b, const RepeatedMotion& motion, const Crew& crew,
                 std::span<std::uint8_t> verdicts);
 
 struct PairContacts {
@@ -51,6 +59,6 @@ struct PairContacts {
 template <typename A, typename B>
 [[nodiscard]] PairContacts first_contacts(Repeated<A> a, Repeated<B> b,
                                           const RepeatedMotion& motion, std::size_t count,
-                                          unsigned threads);
+                                          const Crew& crew);
 
 } // namespace obb

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace obb {
 
@@ -281,6 +282,40 @@ double StaticQuery::distance_bound(const Pair& pair) const {
     // Upwards, for subnormal bounds are rounded by more than the slack.
     const double largest = std::numeric_limits<double>::max();
     return std::fmin(std::nextafter(bound, std::numeric_limits<double>::infinity()), largest);
+}
+
+std::vector<StaticQuery> StaticQuery::divide(std::size_t count) {
+    std::vector<Pair> wide = std::move(stack_);
+    while (!wide.empty() && wide.size() < count) {
+        std::vector<Pair> next;
+        for (const Pair& pair : wide) {
+            stack_.assign(1, pair);
+            ++counts_.pops;
+            visit();
+            next.insert(next.end(), stack_.begin(), stack_.end());
+        }
+        wide = std::move(next);
+    }
+    stack_.clear();
+    StaticQuery empty = *this;
+    empty.pairs_.clear();
+    empty.counts_ = {};
+    std::vector<StaticQuery> parts(wide.size(), empty);
+    for (std::size_t k = 0; k < wide.size(); ++k) {
+        parts[k].stack_.assign(1, wide[k]);
+    }
+    return parts;
+}
+
+void StaticQuery::join(std::span<const StaticQuery> parts) {
+    for (const StaticQuery& part : parts) {
+        pairs_.insert(pairs_.end(), part.pairs_.begin(), part.pairs_.end());
+        counts_.box_tests += part.counts_.box_tests;
+        counts_.triangle_tests += part.counts_.triangle_tests;
+        counts_.exact_triangle_tests += part.counts_.exact_triangle_tests;
+        counts_.pops += part.counts_.pops;
+    }
+    finish();
 }
 
 void StaticQuery::finish() {

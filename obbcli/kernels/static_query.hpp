@@ -79,6 +79,13 @@ class StaticQuery {
     // Takes at most so many pairs off the stack; true when the answer is complete.
     bool advance(std::uint64_t max_pops);
 
+    // Of a query for all pairs without a limit: goes on breadth first until there are so many pairs
+    // of nodes to look into, or none, and hands each over to a query of its own. These can be
+    // advanced at the same time; join() takes over what they found. The pairs and counts are those
+    // of the undivided query.
+    [[nodiscard]] std::vector<StaticQuery> divide(std::size_t count);
+    void join(std::span<const StaticQuery> parts);
+
     // Pairs of rows of the mesh files, sorted; the first contact found unless all were asked for.
     [[nodiscard]] std::span<const TrianglePair> pairs() const { return pairs_; }
     // Contact between boxes that stand for what they hold.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from obbcli import kernels
+from obbcli.cores import thread_count
 from obbcli.errors import MotionError, ObbError
 from obbcli.primitives.contacts import (
     PrimitiveContact,
@@ -50,7 +50,7 @@ def intersects(
     velocity_b: ArrayLike = 0,
     duration: ArrayLike = 0.0,
     *,
-    threads: int | None = 1,
+    threads: int | None = None,
 ) -> bool | NDArray[np.bool_]:
     """Return whether two shapes have a point in common at any time in `[0, duration]`.
 
@@ -62,7 +62,8 @@ def intersects(
         velocity_a: (3,) or (N, 3), units of length a second; 0: at rest.
         velocity_b: the same of B.
         duration: s, at least 0; one or (N,). 0 asks about the shapes where they are.
-        threads: for arrays; None: as many as there are cores.
+        threads: for arrays, at most so many; None: as many as this process may use cores. They
+            change nothing but the time it takes.
 
     Returns:
         bool, or bool (N,) where any argument is an array of N.
@@ -73,7 +74,7 @@ def intersects(
     """
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
     verdicts = np.empty(pairs.pair_count, dtype=np.uint8)
-    kernels.primitive_intersects(*pairs[:5], _thread_count(threads), verdicts)
+    kernels.primitive_intersects(*pairs[:5], thread_count(threads), verdicts)
     # Bit 0 of a verdict; bit 1 tells how it was found.
     return bool(verdicts[0] & 1) if pairs.is_single else (verdicts & 1).view(np.bool_)
 
@@ -85,7 +86,7 @@ def first_contact(
     velocity_b: ArrayLike = 0,
     duration: ArrayLike = 0.0,
     *,
-    threads: int | None = 1,
+    threads: int | None = None,
 ) -> PrimitiveContact | PrimitiveContacts | None:
     """Return when, where and how two shapes first meet in `[0, duration]`.
 
@@ -99,7 +100,8 @@ def first_contact(
         velocity_a: (3,) or (N, 3), units of length a second; 0: at rest.
         velocity_b: the same of B.
         duration: s, at least 0; one or (N,).
-        threads: for arrays; None: as many as there are cores.
+        threads: for arrays, at most so many; None: as many as this process may use cores. They
+            change nothing but the time it takes.
 
     Returns:
         One pair: its contact, or None where the shapes never meet. Where any argument is an array
@@ -111,7 +113,7 @@ def first_contact(
         ObbError: not shapes, or arrays of different lengths.
     """
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
-    columns = kernels.primitive_first_contacts(*pairs[:6], _thread_count(threads))
+    columns = kernels.primitive_first_contacts(*pairs[:6], thread_count(threads))
     lost = ~np.isfinite(columns["point"]).all(axis=1)
     if lost.any():
         row = int(columns["rows"][np.argmax(lost)])
@@ -186,11 +188,3 @@ def _as_duration(value: ArrayLike) -> tuple[Floats, bool]:
         where, row = first_row(negative, "duration", single=single)
         raise MotionError(where, f"is {durations[row]}", "a duration is finite and at least 0")
     return durations, single
-
-
-def _thread_count(threads: int | None) -> int:
-    if threads is None:
-        return os.cpu_count() or 1
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise ObbError("threads", f"is {threads!r}", "expected a positive integer or None")
-    return min(threads, 256)
