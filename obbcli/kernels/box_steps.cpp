@@ -116,31 +116,6 @@ Sides sides_of(const LaneMotion& motion, const BasicObb<Four>& boxes, const Movi
 
 } // namespace
 
-OBB_WIDE void place_boxes(const LaneMotion& motion, const std::array<const Node*, 4>& nodes,
-                          BasicObb<Four>& boxes) {
-    const auto lanes = [&](auto value) {
-        return Four{value(*nodes[0]), value(*nodes[1]), value(*nodes[2]), value(*nodes[3])};
-    };
-    const auto turned = [&](const Vector3<Four>& v) {
-        return Vector3<Four>{dot(motion.matrix[0], v), dot(motion.matrix[1], v),
-                             dot(motion.matrix[2], v)};
-    };
-    const auto axes =
-        axes_of_quaternion(lanes([](const Node& n) { return double{n.rotation[0]}; }),
-                           lanes([](const Node& n) { return double{n.rotation[1]}; }),
-                           lanes([](const Node& n) { return double{n.rotation[2]}; }),
-                           lanes([](const Node& n) { return double{n.rotation[3]}; }));
-    for (std::size_t k = 0; k < 3; ++k) {
-        boxes.axes[k] = turned(axes[k]);
-        boxes.half_extents[k] =
-            motion.node_scale * lanes([k](const Node& n) { return double{n.half_extents[k]}; });
-    }
-    const Vector3<Four> center{motion.node_scale * lanes([](const Node& n) { return n.center.x; }),
-                               motion.node_scale * lanes([](const Node& n) { return n.center.y; }),
-                               motion.node_scale * lanes([](const Node& n) { return n.center.z; })};
-    boxes.center = turned(center) + motion.shift;
-}
-
 OBB_WIDE std::array<double, 2> times_apart(const LaneMotion& motion, const BasicObb<Four>& boxes,
                                            const MovingFrame& frame) {
     const double speeds = frame.spin_a->speed() + frame.spin_b->speed();

@@ -30,8 +30,8 @@ double ContactQuery::window(const Entry& entry) const {
 // whole again, unless all its parts were proven apart for good.
 void ContactQuery::close_after(Entry& entry, double wide) {
     const double stop = entry.time + std::ldexp(wide, static_cast<int>(entry.reopened));
-    if (!(stop + 2 * (stop - entry.time) < entry.end)) {
-        return;
+    if (!(stop > entry.time) || !(stop + 2 * (stop - entry.time) < entry.end)) {
+        return; // of points, say
     }
     if (free_windows_.empty()) {
         free_windows_.push_back(static_cast<std::uint32_t>(is_needed_.size()));
@@ -69,9 +69,8 @@ bool ContactQuery::is_over(const Entry& entry) {
 
 // The boxes of two parts of each body at the present time.
 void ContactQuery::place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b) {
-    static constexpr Node kNone{{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0, 0, 0};
     const auto node = [](const MovingTree& body, const NodeRef& ref) {
-        return ref.is_triangle() ? &kNone : &body.tree().node(ref);
+        return ref.is_triangle() ? &kNoBox : &body.tree().node(ref);
     };
     place_boxes(*motion_, {node(a_, a[0]), node(a_, a[1]), node(b_, b[0]), node(b_, b[1])},
                 *boxes_);

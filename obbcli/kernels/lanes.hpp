@@ -60,5 +60,10 @@ inline void set_lane(BasicObb<Four>& boxes, std::size_t k, const Obb& box) {
 [[nodiscard]] inline Vec3 lane(const Vector3<Four>& v, std::size_t k) {
     return {v.x[k], v.y[k], v.z[k]};
 }
+[[nodiscard]] inline Obb lane(const BasicObb<Four>& boxes, std::size_t k) {
+    return {lane(boxes.center, k),
+            {lane(boxes.axes[0], k), lane(boxes.axes[1], k), lane(boxes.axes[2], k)},
+            lane(boxes.half_extents, k)};
+}
 
 } // namespace obb

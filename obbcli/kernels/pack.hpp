@@ -29,6 +29,10 @@ using FourMask = std::int64_t __attribute__((vector_size(32))); // all bits or n
 [[nodiscard]] inline bool is_all(bool mask) { return mask; }
 [[nodiscard]] inline bool is_all(PackMask mask) { return (mask[0] & mask[1]) != 0; }
 
+[[nodiscard]] inline bool is_all(FourMask mask) {
+    return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+}
+
 [[nodiscard]] inline bool is_none(bool mask) { return !mask; }
 [[nodiscard]] inline bool is_none(PackMask mask) { return (mask[0] | mask[1]) == 0; }
 [[nodiscard]] inline bool is_none(FourMask mask) {

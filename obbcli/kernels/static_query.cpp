@@ -11,6 +11,13 @@
 
 namespace obb {
 
+namespace {
+
+// Of two boxes whose sizes differ by no more than this both are opened.
+constexpr double kAlike = 0.5;
+
+} // namespace
+
 void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
     matrix_ = matrix;
     offset_ = offset;
@@ -78,47 +85,26 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     exponent_ = frame.exponent;
-    Pair roots;
-    reach(a_, a.root(), options.max_depth_a, roots.a);
-    reach(b_, b.root(), options.max_depth_b, roots.b);
-    if (!are_apart(roots.a, roots.b)) {
-        stack_.push_back(roots);
+    frame_ = std::make_unique<LaneFrame>();
+    frame_->node_scale = halves(a_.node_scale(), b_.node_scale());
+    for (std::size_t i = 0; i < 3; ++i) {
+        frame_->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
     }
+    frame_->shift = halves(a_.offset(), b_.offset());
+    // As if both were children of a node.
+    open({a.root(), b.root()}, false, false);
 }
 
-void StaticQuery::reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
-                        Side& side) const {
-    side.ref = ref;
-    side.next = ref.begin;
-    side.is_open = false;
-    if (ref.is_triangle()) {
-        side.triangle = body.triangle_in_frame(ref);
-        return;
-    }
-    const Node& node = body.tree().node(ref);
-    side.box = body.box(node);
-    side.is_open = is_open(node, ref, max_depth);
+bool StaticQuery::is_open(const PosedTree& body, const NodeRef& ref,
+                          std::uint32_t max_depth) const {
+    return !ref.is_triangle() && ref.depth < max_depth &&
+           !(options_.boxes_for_leaves && TreeView::is_leaf(body.tree().node(ref)));
 }
 
-bool StaticQuery::is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const {
-    return ref.depth < max_depth && !(options_.boxes_for_leaves && TreeView::is_leaf(node));
-}
-
-Vec3 StaticQuery::middle(const Side& side) {
-    const Triangle& t = side.triangle;
-    return side.ref.is_triangle() ? (1.0 / 3.0) * (t[0] + t[1] + t[2]) : side.box.center;
-}
-
-bool StaticQuery::are_apart(const Side& a, const Side& b) {
-    if (a.ref.is_triangle() && b.ref.is_triangle()) {
-        return false; // the exact test decides
-    }
-    ++counts_.box_tests;
-    if (a.ref.is_triangle()) {
-        return are_separated(b.box, a.triangle, bound_);
-    }
-    return b.ref.is_triangle() ? are_separated(a.box, b.triangle, bound_)
-                               : are_separated(a.box, b.box, bound_);
+// The largest half extent, in the frame's unit; nothing for triangles.
+double StaticQuery::size_of(const PosedTree& body, const NodeRef& ref) {
+    return ref.is_triangle() ? 0
+                             : body.node_scale() * norm_inf(half_extents_of(body.tree().node(ref)));
 }
 
 bool StaticQuery::advance(std::uint64_t max_pops) {
@@ -132,124 +118,151 @@ bool StaticQuery::advance(std::uint64_t max_pops) {
     return is_finished_;
 }
 
-// The larger box is opened. A node that cannot be opened leaves it to the other.
+// The larger box is opened, or both where they are about as large. A node that cannot be opened
+// leaves it to the other.
 void StaticQuery::visit() {
-    const Side &a = stack_.back().a, &b = stack_.back().b;
-    if (!a.is_open && !b.is_open) {
-        const Pair pair = stack_.back();
+    const Pair pair = stack_.back();
+    const bool open_a = is_open(a_, pair.a, options_.max_depth_a);
+    const bool open_b = is_open(b_, pair.b, options_.max_depth_b);
+    if (!open_a && !open_b) {
         stack_.pop_back();
         meet(pair);
-    } else if (!b.is_open ||
-               (a.is_open && norm_inf(a.box.half_extents) >= norm_inf(b.box.half_extents))) {
-        open<true>();
-    } else {
-        open<false>();
-    }
-}
-
-template <bool kOpensA>
-void StaticQuery::push(const Side& child, const Side& other) {
-    Pair& pair = stack_.emplace_back();
-    (kOpensA ? pair.a : pair.b) = child;
-    (kOpensA ? pair.b : pair.a) = other;
-}
-
-// Replaces the pair on top by those of its children that are not proven apart from the other side,
-// the nearest on top.
-template <bool kOpensA>
-void StaticQuery::open() {
-    const PosedTree& body = kOpensA ? a_ : b_;
-    const NodeRef ref = kOpensA ? stack_.back().a.ref : stack_.back().b.ref;
-    const Node& node = body.tree().node(ref);
-    if (TreeView::is_leaf(node)) {
-        open_leaf<kOpensA>();
         return;
     }
-    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
-    stack_.pop_back();
-    std::array<Side, 2> children;
-    const auto apart = reach_children<kOpensA>(body.tree().children(ref, node), other, children);
-    std::size_t last = 1;
-    if (!apart[0] && !apart[1]) {
-        const Vec3 m = middle(other);
-        last = norm_1(middle(children[0]) - m) < norm_1(middle(children[1]) - m) ? 0 : 1;
+    const double size_a = open_a ? size_of(a_, pair.a) : 0;
+    const double size_b = open_b ? size_of(b_, pair.b) : 0;
+    // Written so that of sizes that are no numbers, in a damaged tree, both are opened.
+    const bool opens_a = open_a && !(size_a < kAlike * size_b);
+    const bool opens_b = open_b && !(size_b < kAlike * size_a);
+    const bool leaf_a = opens_a && TreeView::is_leaf(a_.tree().node(pair.a));
+    const bool leaf_b = opens_b && TreeView::is_leaf(b_.tree().node(pair.b));
+    if (leaf_a || leaf_b) {
+        open_leaf(leaf_a);
+        return;
     }
-    for (const std::size_t k : {1 - last, last}) {
-        if (!apart[k]) {
-            push<kOpensA>(children[k], other);
+    stack_.pop_back();
+    open(pair, opens_a, opens_b);
+}
+
+StaticQuery::Parts StaticQuery::parts_of(const PosedTree& body, const NodeRef& ref,
+                                         bool is_opened) {
+    if (is_opened) {
+        return {body.tree().children(ref, body.tree().node(ref)), 2};
+    }
+    return {{ref, ref}, 1};
+}
+
+// Whether shapes, of which triangles have no box, are not proven apart.
+bool StaticQuery::may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
+                           const Triangle& b) {
+    if (box_a == nullptr && box_b == nullptr) {
+        return true; // the exact test decides
+    }
+    ++counts_.box_tests;
+    if (box_a == nullptr) {
+        return !are_separated(*box_b, a, bound_);
+    }
+    return !(box_b == nullptr ? are_separated(*box_a, b, bound_)
+                              : are_separated(*box_a, *box_b, bound_));
+}
+
+// Pushes the pairs of their parts that are not proven apart, the nearest on top. All pairs of boxes
+// are tested at once.
+void StaticQuery::open(const Pair& pair, bool opens_a, bool opens_b) {
+    const Parts a = parts_of(a_, pair.a, opens_a), b = parts_of(b_, pair.b, opens_b);
+    const auto node = [](const PosedTree& body, const NodeRef& ref) {
+        return ref.is_triangle() ? &kNoBox : &body.tree().node(ref);
+    };
+    BasicObb<Four> boxes;
+    const unsigned meeting = meeting_pairs(
+        *frame_,
+        {node(a_, a.refs[0]), node(a_, a.refs[1]), node(b_, b.refs[0]), node(b_, b.refs[1])},
+        bound_, boxes);
+    std::array<Triangle, 4> triangles;
+    std::array<Vec3, 4> middles;
+    const auto middle = [&](const PosedTree& body, const NodeRef& ref, std::size_t k) {
+        middles[k] = lane(boxes.center, k);
+        if (ref.is_triangle()) {
+            Triangle& t = triangles[k] = body.triangle_in_frame(ref);
+            middles[k] = (1.0 / 3.0) * (t[0] + t[1] + t[2]);
         }
+    };
+    for (std::size_t k = 0; k < 2; ++k) {
+        middle(a_, a.refs[k], k);
+        middle(b_, b.refs[k], 2 + k);
+    }
+    struct Near {
+        double distance;
+        std::size_t i, j;
+    };
+    std::array<Near, 4> near;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.count; ++i) {
+        for (std::size_t j = 0; j < b.count; ++j) {
+            const bool triangle_a = a.refs[i].is_triangle(), triangle_b = b.refs[j].is_triangle();
+            bool meets = (meeting >> (2 * i + j) & 1U) != 0;
+            if (triangle_a || triangle_b) {
+                const Obb box_a = lane(boxes, i), box_b = lane(boxes, 2 + j);
+                meets = may_meet(triangle_a ? nullptr : &box_a, triangles[i],
+                                 triangle_b ? nullptr : &box_b, triangles[2 + j]);
+            } else {
+                ++counts_.box_tests;
+            }
+            if (meets) {
+                near[count++] = {norm_1(middles[i] - middles[2 + j]), i, j};
+            }
+        }
+    }
+    // Farthest first; the order of equal ones is that of the children.
+    for (std::size_t k = 1; k < count; ++k) {
+        for (std::size_t m = k; m > 0 && near[m - 1].distance < near[m].distance; --m) {
+            std::swap(near[m - 1], near[m]);
+        }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        stack_.push_back({a.refs[near[k].i], b.refs[near[k].j], 0});
     }
 }
 
 // Pushes the leaf's next triangles and, while there are more, leaves the leaf below them: leaves
 // may hold whole meshes, and neither the stack nor the time between two looks at the clock should.
-template <bool kOpensA>
-void StaticQuery::open_leaf() {
+void StaticQuery::open_leaf(bool opens_a) {
     constexpr std::uint32_t kTrianglesAPop = 64;
-    const Side other = kOpensA ? stack_.back().b : stack_.back().a;
-    Side& leaf = kOpensA ? stack_.back().a : stack_.back().b;
-    const NodeRef ref = leaf.ref;
-    const std::uint32_t begin = leaf.next;
-    const std::uint32_t end = begin + std::min(kTrianglesAPop, ref.end - begin);
-    leaf.next = end;
-    if (end == ref.end) {
+    Pair& top = stack_.back();
+    const NodeRef leaf = opens_a ? top.a : top.b, other = opens_a ? top.b : top.a;
+    const PosedTree &body = opens_a ? a_ : b_, &others = opens_a ? b_ : a_;
+    const std::uint32_t begin = leaf.begin + top.next;
+    const std::uint32_t end = begin + std::min(kTrianglesAPop, leaf.end - begin);
+    top.next = end - leaf.begin;
+    if (end == leaf.end) {
         stack_.pop_back();
     }
-    Side child;
+    const bool is_triangle = other.is_triangle();
+    const Obb box = is_triangle ? Obb{} : others.box(others.tree().node(other));
+    const Triangle triangle = is_triangle ? others.triangle_in_frame(other) : Triangle{};
     for (std::uint32_t i = begin; i < end; ++i) {
-        reach(kOpensA ? a_ : b_, TreeView::triangle_ref(ref, i), 0, child);
-        if (!(kOpensA ? are_apart(child, other) : are_apart(other, child))) {
-            push<kOpensA>(child, other);
+        const NodeRef child = TreeView::triangle_ref(leaf, i);
+        if (may_meet(nullptr, body.triangle_in_frame(child), is_triangle ? nullptr : &box,
+                     triangle)) {
+            stack_.push_back(opens_a ? Pair{child, other, 0} : Pair{other, child, 0});
         }
     }
-}
-
-// Two boxes against one are tested at once.
-template <bool kOpensA>
-std::array<bool, 2> StaticQuery::reach_children(const std::array<NodeRef, 2>& refs,
-                                                const Side& other, std::array<Side, 2>& children) {
-    const PosedTree& body = kOpensA ? a_ : b_;
-    const std::uint32_t max_depth = kOpensA ? options_.max_depth_a : options_.max_depth_b;
-    if (refs[0].is_triangle() || refs[1].is_triangle() || other.ref.is_triangle()) {
-        std::array<bool, 2> apart;
-        for (std::size_t k = 0; k < 2; ++k) {
-            reach(body, refs[k], max_depth, children[k]);
-            apart[k] = kOpensA ? are_apart(children[k], other) : are_apart(other, children[k]);
-        }
-        return apart;
-    }
-    const std::array<const Node*, 2> nodes{&body.tree().node(refs[0]), &body.tree().node(refs[1])};
-    const BasicObb<Pack> boxes = body.boxes(*nodes[0], *nodes[1]);
-    const BasicObb<Pack> twice = broadcast(other.box);
-    const PackMask mask =
-        kOpensA ? are_separated(boxes, twice, bound_) : are_separated(twice, boxes, bound_);
-    counts_.box_tests += 2;
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (mask[k] == 0) {
-            children[k].ref = refs[k];
-            children[k].next = refs[k].begin;
-            children[k].is_open = is_open(*nodes[k], refs[k], max_depth);
-            children[k].box = lane(boxes, k);
-        }
-    }
-    return {mask[0] != 0, mask[1] != 0};
 }
 
 void StaticQuery::meet(const Pair& pair) {
-    if (!pair.a.ref.is_triangle() || !pair.b.ref.is_triangle()) {
+    if (!pair.a.is_triangle() || !pair.b.is_triangle()) {
         is_by_boxes_ = true;
         error_bound_ = distance_bound(pair);
         stack_.clear();
         return;
     }
     ++counts_.triangle_tests;
-    const TriangleVerdict verdict =
-        test_triangles(a_.triangle(pair.a.ref), b_.triangle(pair.b.ref));
+    const TriangleVerdict verdict = test_triangles(a_.triangle(pair.a), b_.triangle(pair.b));
     counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
     if (!verdict.intersects) {
         return;
     }
-    pairs_.push_back({a_.id(pair.a.ref), b_.id(pair.b.ref)});
+    pairs_.push_back({a_.id(pair.a), b_.id(pair.b)});
     if (!options_.all_pairs || pairs_.size() >= options_.limit) {
         stack_.clear();
     }
@@ -268,17 +281,21 @@ double StaticQuery::distance_bound(const Pair& pair) const {
     // Squares of what is far smaller than the scene vanish, and so may products: hence std::hypot
     // and two roots.
     const auto length = [](Vec3 v) { return std::hypot(v.x, v.y, v.z); };
-    const auto diagonal = [&](const Side& s) {
-        return s.ref.is_triangle() ? 0.0 : 2.0 * length(s.box.half_extents);
+    const auto diagonal = [&](const PosedTree& body, const NodeRef& ref) {
+        return ref.is_triangle() ? 0.0 : 2.0 * length(body.box(body.tree().node(ref)).half_extents);
     };
-    const auto extent = [&](const Side& s) {
-        const Triangle& t = s.triangle;
-        return s.ref.is_triangle() ? length(t[1] - t[0]) + length(t[2] - t[0]) : diagonal(s);
+    const auto extent = [&](const PosedTree& body, const NodeRef& ref) {
+        if (!ref.is_triangle()) {
+            return diagonal(body, ref);
+        }
+        const Triangle t = body.triangle_in_frame(ref);
+        return length(t[1] - t[0]) + length(t[2] - t[0]);
     };
-    const double size = 8.0 * (extent(pair.a) + extent(pair.b) + bound_.absolute);
+    const double extents = extent(a_, pair.a) + extent(b_, pair.b);
+    const double size = 8.0 * (extents + bound_.absolute);
     const double e = bound_.relative * size + bound_.absolute;
     const double slack = 4.0 * (std::sqrt(e) * std::sqrt(size) + e);
-    const double bound = std::ldexp(diagonal(pair.a) + diagonal(pair.b) + slack, exponent_);
+    const double bound = std::ldexp(diagonal(a_, pair.a) + diagonal(b_, pair.b) + slack, exponent_);
     // Upwards, for subnormal bounds are rounded by more than the slack.
     const double largest = std::numeric_limits<double>::max();
     return std::fmin(std::nextafter(bound, std::numeric_limits<double>::infinity()), largest);

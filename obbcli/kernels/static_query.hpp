@@ -1,13 +1,14 @@
 // Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
 #pragma once
 
-#include "box_tests.hpp"
+#include "placed_boxes.hpp"
 #include "pose.hpp"
 #include "tree.hpp"
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,10 @@ class PosedTree {
 
     [[nodiscard]] const TreeView& tree() const { return *tree_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
+    [[nodiscard]] const Mat3& matrix() const { return matrix_; }
+    [[nodiscard]] Vec3 offset() const { return offset_; }
+    // The nodes' unit in the frame's.
+    [[nodiscard]] double node_scale() const { return scale_; }
     [[nodiscard]] Obb box(const Node& node) const;
     [[nodiscard]] BasicObb<Pack> boxes(const Node& first, const Node& second) const;
     [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
@@ -96,35 +101,25 @@ class StaticQuery {
     [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
 
   private:
-    // A node as the tests see it, made once, when it is reached through its parent, and carried
-    // along: its box, or the triangle that needs none.
-    struct Side {
-        NodeRef ref;
-        std::uint32_t next; // of a leaf's triangles, the first that was not yet pushed
-        bool is_open;       // has children or triangles to descend to
-        Obb box;
-        Triangle triangle;
-    };
     struct Pair {
-        Side a, b;
+        NodeRef a, b;
+        std::uint32_t next = 0; // of a leaf that is opened, the first triangle not yet pushed
+    };
+    // Up to two parts of a node: its children, or the node itself.
+    struct Parts {
+        std::array<NodeRef, 2> refs;
+        std::size_t count;
     };
 
-    void reach(const PosedTree& body, const NodeRef& ref, std::uint32_t max_depth,
-               Side& side) const;
-    [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
-    [[nodiscard]] static Vec3 middle(const Side& side);
-    [[nodiscard]] bool are_apart(const Side& a, const Side& b);
+    [[nodiscard]] bool is_open(const PosedTree& body, const NodeRef& ref,
+                               std::uint32_t max_depth) const;
+    [[nodiscard]] static double size_of(const PosedTree& body, const NodeRef& ref);
+    [[nodiscard]] static Parts parts_of(const PosedTree& body, const NodeRef& ref, bool is_opened);
     void visit();
-    template <bool kOpensA>
-    void open();
-    template <bool kOpensA>
-    void open_leaf();
-    template <bool kOpensA>
-    [[nodiscard]] std::array<bool, 2> reach_children(const std::array<NodeRef, 2>& refs,
-                                                     const Side& other,
-                                                     std::array<Side, 2>& children);
-    template <bool kOpensA>
-    void push(const Side& child, const Side& other);
+    void open(const Pair& pair, bool opens_a, bool opens_b);
+    void open_leaf(bool opens_a);
+    [[nodiscard]] bool may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
+                                const Triangle& b);
     void meet(const Pair& pair);
     [[nodiscard]] double distance_bound(const Pair& pair) const;
     void finish();
@@ -133,6 +128,8 @@ class StaticQuery {
     StaticQueryOptions options_;
     RoundingBound bound_{};
     int exponent_ = 0;
+    // Apart from this object, which Python aligns no better than others.
+    std::unique_ptr<LaneFrame> frame_;
     std::vector<Pair> stack_;
     std::vector<TrianglePair> pairs_;
     bool is_by_boxes_ = false;
