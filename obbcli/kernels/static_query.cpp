@@ -85,12 +85,13 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     exponent_ = frame.exponent;
-    frame_ = std::make_unique<LaneFrame>();
-    frame_->node_scale = halves(a_.node_scale(), b_.node_scale());
+    const auto placed = std::make_shared<LaneFrame>();
+    placed->node_scale = halves(a_.node_scale(), b_.node_scale());
     for (std::size_t i = 0; i < 3; ++i) {
-        frame_->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
+        placed->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
     }
-    frame_->shift = halves(a_.offset(), b_.offset());
+    placed->shift = halves(a_.offset(), b_.offset());
+    frame_ = placed;
     // As if both were children of a node.
     open({a.root(), b.root()}, false, false);
 }

@@ -129,7 +129,7 @@ class StaticQuery {
     RoundingBound bound_{};
     int exponent_ = 0;
     // Apart from this object, which Python aligns no better than others.
-    std::unique_ptr<LaneFrame> frame_;
+    std::shared_ptr<const LaneFrame> frame_;
     std::vector<Pair> stack_;
     std::vector<TrianglePair> pairs_;
     bool is_by_boxes_ = false;
