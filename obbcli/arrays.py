@@ -35,16 +35,15 @@ def as_floats(
     Raises:
         error: not numbers, another shape, or a value that is not finite (the first is named).
     """
-    wanted = "(" + ", ".join("N" if n is None else str(n) for n in shape) + ")"
     try:
         # A copy, so that a caller who writes to the source later changes no answer.
         array = np.array(value, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as fault:
-        raise error(name, f"expected numbers of shape {wanted}", f"{fault}") from fault
+        raise error(name, f"expected numbers of shape {_in_words(shape)}", f"{fault}") from fault
     if array.ndim != len(shape) or any(
         n is not None and n != m for n, m in zip(shape, array.shape, strict=True)
     ):
-        raise error(name, f"has shape {array.shape}, expected {wanted}")
+        raise error(name, f"has shape {array.shape}, expected {_in_words(shape)}")
     finite = np.isfinite(array)
     if not finite.all():
         place = np.unravel_index(int(np.argmin(finite)), array.shape)
@@ -52,3 +51,7 @@ def as_floats(
         raise error(f"{name}[{index}]", f"is {array[place]}", "coordinates must be finite")
     array.setflags(write=False)
     return array
+
+
+def _in_words(shape: tuple[int | None, ...]) -> str:
+    return "(" + ", ".join("N" if n is None else str(n) for n in shape) + ")"

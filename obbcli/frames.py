@@ -13,6 +13,8 @@ import numpy as np
 from obbcli.errors import MotionError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 # Of a column's length: what is left of it across the others is rounding where it is no more.
@@ -53,14 +55,13 @@ def rk4_step(
     Raises:
         MotionError: the step turns by so much that nothing is left of the frame.
     """
+    # As the equation is linear and W constant, its four stages come to a polynomial in S.
     with np.errstate(all="ignore"):
         turn = _cross(time * spin)
-        first = turn @ frame
-        second = turn @ (frame + 0.5 * first)
-        third = turn @ (frame + 0.5 * second)
-        fourth = turn @ (frame + third)
-        change = (first + 2.0 * (second + third) + fourth) / 6.0
-        return _orthonormalized(frame + change, spin, time)
+        result = frame
+        for order in (4, 3, 2, 1):
+            result = frame + (turn / order) @ result
+        return _orthonormalized(result, spin, time)
 
 
 def _cross(vector: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -73,10 +74,11 @@ def _orthonormalized(
     frame: NDArray[np.float64], spin: NDArray[np.float64], time: float
 ) -> NDArray[np.float64]:
     """Return the right-handed frame that Gram and Schmidt make of three columns."""
-    x, y = _normalized(frame[:, 0]), _normalized(frame[:, 1])
-    rest = y - (x @ y) * x
+    first, second, _ = frame.T.tolist()
+    x = _normalized(first)
+    rest = _across(_normalized(second), x)
     # Written so that it refuses what is not a number.
-    if not np.abs(rest).max() > _LOST:
+    if not max(map(abs, rest)) > _LOST:
         angle = math.hypot(*spin.tolist()) * time
         raise MotionError(
             "steps",
@@ -84,11 +86,18 @@ def _orthonormalized(
             "take more, or the exact integrator",
         )
     # Once more: what was left has been rounded by as much as the columns were long.
-    rest = _normalized(rest)
-    y = _normalized(rest - (x @ rest) * x)
-    return np.column_stack((x, y, _cross(x) @ y))
+    y = _normalized(_across(_normalized(rest), x))
+    z = x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
+    orthonormal: NDArray[np.float64] = np.array((x, y, z)).T
+    return orthonormal
 
 
-def _normalized(vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    unit: NDArray[np.float64] = vector / math.sqrt(vector @ vector)
-    return unit
+def _normalized(vector: Sequence[float]) -> list[float]:
+    length = math.hypot(*vector)
+    return [v / length for v in vector]
+
+
+def _across(vector: Sequence[float], unit: Sequence[float]) -> list[float]:
+    """Return what is left of a vector across a unit one."""
+    along = vector[0] * unit[0] + vector[1] * unit[1] + vector[2] * unit[2]
+    return [v - along * u for v, u in zip(vector, unit, strict=True)]

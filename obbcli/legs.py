@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 # Of the coordinates: posing a vertex thrice (12 u each), a matrix product (16 u) and the pose in
 # closed form (28 u) come to a third of this; the rest lets the kernels prove closeness within it.
-_ROUNDING = 2.0**-45
+ROUNDING = 2.0**-45
 
 
 def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterator[Leg]:
@@ -78,7 +78,7 @@ def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
 
 def rounding_of(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
     """Bound what rounding moves a vertex by where these are added up."""
-    return _ROUNDING * sum(map(norm, (*vectors, np.abs(tree.bounds).max(axis=0))))
+    return ROUNDING * sum(map(norm, (*vectors, np.abs(tree.bounds).max(axis=0))))
 
 
 def jump_at(body: Body, tree: ObbTree, time: float) -> float:

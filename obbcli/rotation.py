@@ -60,7 +60,7 @@ def turn_after(spin: NDArray[np.float64], time: float) -> Turn:
     Raises:
         MotionError: the angle exceeds the range of double.
     """
-    root, shift = _speed(tuple(spin.tolist()))
+    root, shift, axis = _speed(tuple(spin.tolist()))
     numerator, denominator = abs(time).as_integer_ratio()
     angle = root * numerator
     if angle == 0:
@@ -72,7 +72,7 @@ def turn_after(spin: NDArray[np.float64], time: float) -> Turn:
         raise MotionError("time", "turns by more than a double can hold", "shorten it") from fault
     whole, part = high.as_integer_ratio()
     low = (angle * part - whole * unit) / (unit * part)
-    axis = math.copysign(1.0, time) * axis_of(spin)
+    axis = math.copysign(1.0, time) * axis
     cosine, sine = _cosine_sine(high, low)
     half = _cosine_sine(0.5 * high, 0.5 * low)[1]
     return Turn(axis, cosine, sine, 2.0 * half * half)
@@ -87,16 +87,18 @@ def axis_of(spin: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=64)
-def _speed(spin: tuple[float, float, float]) -> tuple[int, int]:
-    """Return |W| as a whole number and by how many bits it is too large, rounded down.
+def _speed(spin: tuple[float, float, float]) -> tuple[int, int, NDArray[np.float64]]:
+    """Return |W| as a whole number, by how many bits it is too large, and the axis.
 
-    The root of a sum of squares in integers, shifted so that it has enough bits.
+    Rounded down: the root of a sum of squares in integers, shifted so that it has enough bits.
     """
     ratios = [w.as_integer_ratio() for w in spin]
     bits = max(denominator.bit_length() - 1 for _, denominator in ratios)
     square = sum(((n << bits) // d) ** 2 for n, d in ratios)
     more = max(_ANGLE_BITS - square.bit_length() // 2, 0)
-    return math.isqrt(square << 2 * more), bits + more
+    axis = axis_of(np.array(spin)) if square else np.zeros(3)
+    axis.setflags(write=False)
+    return math.isqrt(square << 2 * more), bits + more, axis
 
 
 def _cosine_sine(high: float, low: float) -> tuple[float, float]:

@@ -24,7 +24,7 @@ import numpy as np
 
 from obbcli.errors import MotionError
 from obbcli.frames import euler_step, rk4_step
-from obbcli.legs import jump_at, norm, rounding_of
+from obbcli.legs import ROUNDING, jump_at, norm, rounding_of
 from obbcli.motion import Body, Motion, PathMotion
 from obbcli.pose import Pose
 from obbcli.question import pivot_of
@@ -146,6 +146,9 @@ class _Path(Protocol):
     def turns(self, start: float, end: float, /) -> list[tuple[float, Array, float]]:
         """Return for how long which W turns it, and its largest distance from that axis."""
 
+    def motion(self, chord: _Chord, /) -> Motion:
+        """Return the center's velocity along a chord."""
+
     def bend(self, chord: _Chord, /) -> float:
         """Bound how far the path is off a chord of its center but for turns, rounding included."""
 
@@ -168,17 +171,16 @@ class _Frozen:
         frame, drift, turned = true, 0.0, 0.0
         if self._integrate is not None:
             frame = self._turn @ path.first
-            drift = max(map(norm, path.corners @ (frame - true).T))
+            drift = max(map(math.hypot, *((frame - true) @ path.corners.T).tolist()))
         for time, spin, radius in path.turns(start, end):
             turned += 2 * radius * math.sin(0.5 * min(norm(spin) * time, math.pi))
             if self._integrate is not None:
                 self._turn = self._integrate(self._turn, spin, time)
         chord = _Chord(start, end, center, self._next[1][1])
-        if not np.isfinite(chord.there).all():
+        if not math.isfinite(norm(chord.there)):
             raise _beyond_doubles()
         error = _UP * (drift + min(turned, self._diameter) + path.bend(chord))
-        velocity = (chord.there - chord.here) / (end - start)
-        return Body(self._tree, path.pose(frame, center), Motion(velocity)), error
+        return Body(self._tree, path.pose(frame, center), path.motion(chord)), error
 
 
 class _Screw:
@@ -193,7 +195,7 @@ class _Screw:
         used = tree.vertices[np.unique(tree.mesh.triangles)]
         self._radius = _radius(body.pose.apply(used) - self._pivot, self._spin)
         self._rounding = rounding_of(tree, self._pivot, self._pivot, body.pose.translation)
-        self._tree = tree
+        self._motion = Motion(self._velocity)
 
     def place(self, time: float, /) -> tuple[Array, Array]:
         return turn_after(self._spin, time).matrix, self._pivot + time * self._velocity
@@ -204,8 +206,11 @@ class _Screw:
     def turns(self, start: float, end: float, /) -> list[tuple[float, Array, float]]:
         return [(end - start, self._spin, self._radius)]
 
+    def motion(self, _: _Chord, /) -> Motion:
+        return self._motion
+
     def bend(self, chord: _Chord, /) -> float:
-        return self._rounding + rounding_of(self._tree, chord.end * self._velocity)
+        return self._rounding + ROUNDING * norm(chord.end * self._velocity)
 
 
 class _Poses:
@@ -234,6 +239,9 @@ class _Poses:
                 arms = self.corners @ self._motion.poses[index].rotation.T
                 found.append((there - here, spin, _radius(arms, spin)))
         return found
+
+    def motion(self, chord: _Chord, /) -> Motion:
+        return Motion((chord.there - chord.here) / (chord.end - chord.start))
 
     def bend(self, chord: _Chord, /) -> float:
         times = self._times(chord.start, chord.end)
