@@ -89,7 +89,7 @@ sanitize: .build/sanitize/installed
 
 # Only what such questions need: the whole library would take minutes to compile.
 THREAD_TEST := tests/threads/growing_trees.cpp
-THREAD_KERNELS := $(addprefix $(KERNELS)/,$(addsuffix .cpp,tree tree_build fit static_query distance_query placed_boxes \
+THREAD_KERNELS := $(addprefix $(KERNELS)/,$(addsuffix .cpp,tree tree_build fit static_query static_triangles triangle_lanes distance_query placed_boxes \
   query_frame predicates closest_points overlap_point convex_polygon contact_point fit_hull fit_min_volume calipers \
   convex_hull quick_hull grid_points hull_body found_box))
 

@@ -1,6 +1,5 @@
 #include "static_query.hpp"
 
-#include "predicates.hpp"
 #include "query_frame.hpp"
 #include "scale.hpp"
 
@@ -123,6 +122,11 @@ bool StaticQuery::advance(std::uint64_t max_pops) {
 // leaves it to the other.
 void StaticQuery::visit() {
     const Pair pair = stack_.back();
+    if (is_crowd(pair)) {
+        stack_.pop_back();
+        meet_all(pair);
+        return;
+    }
     const bool open_a = is_open(a_, pair.a, options_.max_depth_a);
     const bool open_b = is_open(b_, pair.b, options_.max_depth_b);
     if (!open_a && !open_b) {
@@ -247,25 +251,6 @@ void StaticQuery::open_leaf(bool opens_a) {
                      triangle)) {
             stack_.push_back(opens_a ? Pair{child, other, 0} : Pair{other, child, 0});
         }
-    }
-}
-
-void StaticQuery::meet(const Pair& pair) {
-    if (!pair.a.is_triangle() || !pair.b.is_triangle()) {
-        is_by_boxes_ = true;
-        error_bound_ = distance_bound(pair);
-        stack_.clear();
-        return;
-    }
-    ++counts_.triangle_tests;
-    const TriangleVerdict verdict = test_triangles(a_.triangle(pair.a), b_.triangle(pair.b));
-    counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
-    if (!verdict.intersects) {
-        return;
-    }
-    pairs_.push_back({a_.id(pair.a), b_.id(pair.b)});
-    if (!options_.all_pairs || pairs_.size() >= options_.limit) {
-        stack_.clear();
     }
 }
 

@@ -120,7 +120,11 @@ class StaticQuery {
     void open_leaf(bool opens_a);
     [[nodiscard]] bool may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
                                 const Triangle& b);
+    bool keep_if_intersecting(const NodeRef& ref_a, const Triangle& a, const NodeRef& ref_b,
+                              const Triangle& b);
     void meet(const Pair& pair);
+    [[nodiscard]] bool is_crowd(const Pair& pair) const;
+    void meet_all(const Pair& pair);
     [[nodiscard]] double distance_bound(const Pair& pair) const;
     void finish();
 
