@@ -10,7 +10,8 @@ import numpy as np
 
 from obbcli import __version__, kernels
 from obbcli.errors import MeshError
-from obbcli.treefile import Description, Fit, Split, TreeArrays
+from obbcli.treefile import TreeArrays
+from obbcli.treeheader import Description, Fit, Split
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,6 +110,16 @@ class Growth:
             )
             self.possible_node_count = len(nodes)
             return self._arrays
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles the mesh has."""
+        return len(self.mesh.triangles)
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices the mesh has."""
+        return len(self.mesh.vertices)
 
     @property
     def node_count(self) -> int:

@@ -209,7 +209,7 @@ def _alone(
 
 def _triangle(body: Body, tree: ObbTree, row: int) -> Body:
     """Return a body of one triangle of another, with the same motion."""
-    mesh = Mesh(tree.vertices[tree.mesh.triangles[row]], [[0, 1, 2]])
+    mesh = Mesh(tree.triangle(row), [[0, 1, 2]])
     motion = body.motion
     if not isinstance(motion, PathMotion) and motion.is_turning:
         pivot = pivot_of(body, tree)

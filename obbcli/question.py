@@ -244,6 +244,7 @@ def whole_limit(limit: int) -> int:
 
 
 def damaged(trees: Trees, fault: Exception) -> TreeFileError:
-    """Return the error for a fault that a traversal met."""
-    names = " or ".join(sorted({tree.source or "a tree" for tree in trees}))
+    """Return the error for a fault that a traversal met, under the name of the tree that has it."""
+    met = [tree for tree in trees if tree.fault == str(fault)] or trees
+    names = " or ".join(sorted({tree.place for tree in met}))
     return TreeFileError(names, str(fault), "build it again from the mesh")

@@ -56,8 +56,8 @@ def contact_at_start(
     (a, b), (tree_a, tree_b) = bodies, trees
     # The exact question about the two triangles knows where they meet, and which features.
     touch = primitives.first_contact(
-        primitives.Triangle(a.pose.apply(tree_a.vertices[tree_a.mesh.triangles[triangle_a]])),
-        primitives.Triangle(b.pose.apply(tree_b.vertices[tree_b.mesh.triangles[triangle_b]])),
+        primitives.Triangle(a.pose.apply(tree_a.triangle(triangle_a))),
+        primitives.Triangle(b.pose.apply(tree_b.triangle(triangle_b))),
     )
     assert isinstance(touch, primitives.PrimitiveContact)
     point = _vector(touch.point)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli import kernels, treefile
+from obbcli import kernels, treefile, treeheader
 from obbcli.errors import MeshError, TreeFileError
 from obbcli.growth import Growth
 from obbcli.mesh import Mesh, load_mesh
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from obbcli.treefile import Fit, Split
+    from obbcli.opened import OpenedTree
+    from obbcli.treeheader import Fit, Split
 _NO_LIMIT = 2**32 - 1
 
 
@@ -45,11 +46,15 @@ class ObbTree:
     nodes may be made as questions reach them changes no answer.
     """
 
-    def __init__(self, made: treefile.TreeArrays | Growth, path: Path | None = None) -> None:
+    def __init__(
+        self, made: treefile.TreeArrays | Growth | OpenedTree, path: Path | None = None
+    ) -> None:
         self._made = made
         self._path = path
         # What questions ask; no property, as these cost more than a test of two boxes.
-        self.kernel = made.kernel if isinstance(made, Growth) else self._kernel_of(made)
+        self.kernel = (
+            self._kernel_of(made) if isinstance(made, treefile.TreeArrays) else made.kernel
+        )
 
     def _kernel_of(self, arrays: treefile.TreeArrays) -> kernels.Tree:
         try:
@@ -61,7 +66,7 @@ class ObbTree:
                 arrays.scale_exponent,
             )
         except ValueError as fault:
-            raise TreeFileError(self._where, str(fault), "build it again") from fault
+            raise TreeFileError(self.place, str(fault), "build it again") from fault
 
     @classmethod
     def build(
@@ -108,17 +113,23 @@ class ObbTree:
 
     @classmethod
     def open(cls, path: str | os.PathLike[str], verify: bool = True) -> ObbTree:
-        """Return the tree in a file.
+        """Return the tree in a file, of which questions read what they reach.
+
+        The file stays open. One that is replaced, as `save` does it, goes on answering as it was;
+        one that is overwritten or cut short is refused where a question reaches what is gone.
 
         Args:
             path: a tree file (`.obbt`).
-            verify: whether the data's checksums are compared. Structure is checked all the same.
+            verify: whether data are compared with their checksums when they are first read. Links
+                are checked all the same.
 
         Raises:
-            TreeFileError: no tree file, another version, truncated or damaged.
+            TreeFileError: no tree file, another version, truncated or damaged where it was read.
             OSError: the file cannot be read.
         """
-        return cls(treefile.read_tree(path, verify=verify), Path(path))
+        from obbcli.opened import OpenedTree
+
+        return cls(OpenedTree(path, verify=verify), Path(path))
 
     @classmethod
     def from_bytes(
@@ -136,9 +147,10 @@ class ObbTree:
     def save(self, path: str | os.PathLike[str]) -> int:
         """Write the tree to a file, whole or not at all, and return the file's size in bytes.
 
-        Nodes that no question has reached yet are made first.
+        Nodes that no question has reached yet are made or read first.
 
         Raises:
+            TreeFileError: the tree was opened from a file that is damaged.
             OSError: the place cannot be written to.
         """
         return treefile.write_tree(path, self._arrays)
@@ -154,48 +166,71 @@ class ObbTree:
             OSError: the file that the tree was opened from can no longer be read.
         """
         if self._path is not None:
-            treefile.read_tree(self._path, verify=True)
+            from obbcli.opened import OpenedTree
+
+            OpenedTree(self._path).arrays()
         depth = self.max_depth
         fault = self._kernel_of(self._arrays).check(
             min(self.leaf_size, _NO_LIMIT), _NO_LIMIT if depth is None else min(depth, _NO_LIMIT)
         )
         if fault is not None:
-            raise TreeFileError(self._where, fault, "build it again from the mesh")
+            raise TreeFileError(self.place, fault, "build it again from the mesh")
 
     @property
-    def _where(self) -> str:
-        return str(self._path or self.source or "tree")
+    def place(self) -> str:
+        """What errors name: the tree's file, or that of its mesh."""
+        return str(self._path or self.source or "a tree")
+
+    @property
+    def fault(self) -> str | None:
+        """What questions last found wrong in the tree's file; None where nothing was."""
+        made = self._made
+        return None if isinstance(made, (Growth, treefile.TreeArrays)) else made.fault or None
 
     @property
     def _arrays(self) -> treefile.TreeArrays:
         """The whole tree."""
-        return self._made.arrays() if isinstance(self._made, Growth) else self._made
+        made = self._made
+        return made if isinstance(made, treefile.TreeArrays) else made.arrays()
 
     @property
     def vertices(self) -> NDArray[np.float64]:
         """Vertices as the mesh has them, float64 (V, 3), read-only."""
-        return self.mesh.vertices if isinstance(self._made, Growth) else self._made.vertices
+        return self.mesh.vertices if isinstance(self._made, Growth) else self._arrays.vertices
+
+    def triangle(self, row: int) -> NDArray[np.float64]:
+        """Return the corners of a triangle of the mesh, (3, 3); reads no more of a file.
+
+        Raises:
+            TreeFileError: the tree was opened from a file that is damaged.
+        """
+        made = self._made
+        if not isinstance(made, (Growth, treefile.TreeArrays)):
+            return made.triangle(row)
+        corners: NDArray[np.float64] = self.vertices[self.mesh.triangles[row]]
+        return corners
 
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh, its triangles in file order; TreeFileError where a damaged tree holds none."""
         if isinstance(self._made, Growth):
             return self._made.mesh
-        ids = self._made.triangle_ids
+        arrays = self._arrays
+        ids = arrays.triangle_ids
         is_there = np.zeros(self.triangle_count, dtype=bool)
         is_there[ids[ids < self.triangle_count]] = True
         if not is_there.all():
             raise TreeFileError(
-                self._where,
+                self.place,
                 f"no triangle has the id {int(np.argmin(is_there))}",
                 "build it again from the mesh",
             )
         triangles = np.empty((self.triangle_count, 3), np.int32)
-        triangles[ids] = self._made.corners.view(np.int32)
+        triangles[ids] = arrays.corners.view(np.int32)
         try:
             return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
         except MeshError as fault:
-            raise TreeFileError(self._where, str(fault), "build it again from the mesh") from fault
+            raise TreeFileError(self.place, str(fault), "build it again from the mesh") from fault
 
     @property
     def bounds(self) -> NDArray[np.float64]:
@@ -216,12 +251,13 @@ class ObbTree:
     def triangle_count(self) -> int:
         """How many triangles the mesh has."""
         made = self._made
-        return len(made.mesh.triangles) if isinstance(made, Growth) else len(made.corners)
+        return len(made.corners) if isinstance(made, treefile.TreeArrays) else made.triangle_count
 
     @property
     def vertex_count(self) -> int:
         """How many vertices the mesh has."""
-        return len(self.vertices)
+        made = self._made
+        return len(made.vertices) if isinstance(made, treefile.TreeArrays) else made.vertex_count
 
     @property
     def node_count(self) -> int:
@@ -241,7 +277,7 @@ class ObbTree:
         made = self._made
         if isinstance(made, Growth):
             return made.node_count, made.possible_node_count
-        count = len(made.nodes)
+        count = len(made.nodes) if isinstance(made, treefile.TreeArrays) else made.node_count
         return count, count
 
     @cached_property
@@ -251,7 +287,7 @@ class ObbTree:
         try:
             found = self.kernel.levels()
         except kernels.TreeError as fault:
-            raise TreeFileError(self._where, str(fault), "build it again") from fault
+            raise TreeFileError(self.place, str(fault), "build it again") from fault
         return tuple(
             Level(boxes, leaves, _ldexp_or_none(volume, cube)) for boxes, leaves, volume in found
         )
@@ -295,7 +331,7 @@ class ObbTree:
     def nbytes(self) -> int:
         """Bytes of the tree as far as it is made, its triangles and vertices among them."""
         a = self._made
-        if isinstance(a, Growth):
+        if not isinstance(a, treefile.TreeArrays):
             return a.nbytes
         return a.nodes.nbytes + a.corners.nbytes + a.triangle_ids.nbytes + a.vertices.nbytes
 
@@ -325,7 +361,7 @@ def begins_as_tree(path: Path) -> bool:
         return True
     try:
         with path.open("rb") as file:
-            return treefile.is_tree_file(file.read(len(treefile.MAGIC)))
+            return treeheader.is_tree_file(file.read(len(treeheader.MAGIC)))
     except OSError:
         return False
 

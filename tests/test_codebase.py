@@ -33,9 +33,10 @@ LAYERS = (
         "results",
         "verdict",
         "primitives",
+        "treeheader",
         "treefile",
     ),
-    ("growth",),
+    ("growth", "opened"),
     ("tree",),
     (
         "question",

@@ -90,6 +90,7 @@ NEEDED = {
     "obbcli.rotation",
     "obbcli.tree",
     "obbcli.treefile",
+    "obbcli.treeheader",
     "obbcli.verdict",
 }
 # And of the standard library, beside what click and NumPy load: small modules, pathlib with its

@@ -20,7 +20,7 @@ import click
 import pytest
 
 import obbcli
-from obbcli import primitives, treefile
+from obbcli import primitives, treeheader
 from obbcli.cli.app import app
 from obbcli.cli.boundary import ExitCode
 from obbcli.mesh.load import _FORMATS
@@ -214,7 +214,7 @@ def test_tree_file_header_is_the_one_written() -> None:
     types = [row[1].strip("`") for row in fields]
     magic = re.search(r"magic: `([0-9A-F ]+)`", TEXT)
 
-    assert "<" + "".join(types) == treefile._FIXED.format
-    assert [int(row[0]) for row in fields][-1] + 4 == treefile._FIXED.size
+    assert "<" + "".join(types) == treeheader.FIXED.format
+    assert [int(row[0]) for row in fields][-1] + 4 == treeheader.FIXED.size
     assert magic is not None
-    assert bytes.fromhex(magic[1]) == treefile.MAGIC
+    assert bytes.fromhex(magic[1]) == treeheader.MAGIC

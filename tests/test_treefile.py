@@ -246,6 +246,7 @@ def test_check_reads_the_file_again(change: str, tmp_path: Path) -> None:
         "is damaged": lambda: path.write_bytes(path.read_bytes()[:-200] + bytes(200)),
         "vanishes": path.unlink,
     }
+    assert obbcli.collide(tree, tree).collides
     changes[change]()
 
     with pytest.raises(FileNotFoundError if change == "vanishes" else TreeFileError):

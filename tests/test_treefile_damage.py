@@ -207,9 +207,10 @@ def test_treefile_rejects_a_description_that_no_build_has(
 
 def test_checksum_error_names_the_block(tmp_path: Path) -> None:
     data = bytearray(file_of(bumpy_grid(10), tmp_path))
-    data[FIXED.unpack_from(data)[2] + 5000] ^= 1
+    start = FIXED.unpack_from(data)[2]
+    data[start + 5000] ^= 1
 
-    with pytest.raises(TreeFileError, match="between data bytes 4096 and 8192"):
+    with pytest.raises(TreeFileError, match=f"between bytes {start + 4096} and {start + 8192}"):
         ObbTree.from_bytes(bytes(data), "sheet.obbt")
 
 

@@ -138,7 +138,7 @@ def _from_bytes(
     """Return what a stream held: the suffix of its name tells where it is known, else its bytes."""
     from obbcli.mesh import digest_of, known_suffixes, load_mesh_bytes
     from obbcli.tree import ObbTree
-    from obbcli.treefile import is_tree_file
+    from obbcli.treeheader import is_tree_file
 
     if is_tree_file(data):
         tree = ObbTree.from_bytes(data, name, verify=verify)
@@ -150,7 +150,7 @@ def _from_bytes(
 
 def _is_tree(path: Path) -> bool:
     """Return whether a file is a tree, told by its name's suffix or by its first bytes."""
-    from obbcli.treefile import MAGIC, is_tree_file
+    from obbcli.treeheader import MAGIC, is_tree_file
 
     if path.suffix.lower() == ".obbt":
         return True

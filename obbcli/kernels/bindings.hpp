@@ -48,6 +48,13 @@ inline Array owned(std::vector<Record>&& records, std::initializer_list<std::siz
     return Array(kept->data(), shape, owner);
 }
 
+// What an object of the kernels owns, for NumPy to read: the array keeps the object alive.
+template <typename Array, typename Record>
+Array seen(std::span<const Record> records, std::initializer_list<std::size_t> shape,
+           nb::handle owner) {
+    return Array(records.data(), shape, owner);
+}
+
 // Arrays of a tree, kept alive, and the view on them that the kernels use.
 struct Tree {
     Rows<double, 3> vertices;
@@ -125,6 +132,7 @@ class SignalWatch {
 void bind_containment(nb::module_& m);
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);
+void bind_file_tree(nb::module_& m);
 void bind_hull(nb::module_& m);
 void bind_primitives(nb::module_& m);
 void bind_static_query(nb::module_& m);

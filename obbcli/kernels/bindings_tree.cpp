@@ -49,13 +49,6 @@ void init_builder(TreeBuilder* self, const Rows<double, 3>& vertices,
     new (self) TreeBuilder{vertices, corners, obb::TreeBuilder(v, c, options)};
 }
 
-// What the builder owns it keeps, for questions to read: arrays are views of it, and keep it alive.
-template <typename Array, typename Record>
-Array seen(std::span<const Record> records, std::initializer_list<std::size_t> shape,
-           nb::handle owner) {
-    return Array(records.data(), shape, owner);
-}
-
 using Arrays =
     std::tuple<Owned<std::uint8_t, -1, 64>, Owned<std::uint32_t, -1, 3>, Owned<std::uint32_t, -1>>;
 

@@ -93,6 +93,7 @@ void ContactQuery::open(Entry entry) {
     const TreeView& tree = (kOpensA ? a_ : b_).tree();
     const Node& node = tree.node(ref);
     const bool is_leaf = TreeView::is_leaf(node);
+    tree.prepare(ref);
     // Of a leaf the triangles are the children, two at a time.
     const std::uint32_t begin = is_leaf ? ref.begin : 0, end = is_leaf ? ref.end : 2;
     const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);

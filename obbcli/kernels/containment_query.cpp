@@ -75,6 +75,7 @@ void ContainmentQuery::visit() {
     if (!may_meet(node)) {
         return;
     }
+    body_.tree().prepare(ref);
     if (!TreeView::is_leaf(node)) {
         const auto children = body_.tree().children(ref, node);
         stack_.insert(stack_.end(), {children[1], children[0]});

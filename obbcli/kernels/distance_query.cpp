@@ -93,6 +93,7 @@ void DistanceQuery::descend(Pair pair) {
     const auto nearer = [&](const PosedTree& body, const NodeRef& ref, const Side& other) {
         const Node& node = body.tree().node(ref);
         if (TreeView::is_leaf(node)) {
+            body.tree().prepare(ref);
             return TreeView::triangle_ref(ref, ref.begin);
         }
         const auto refs = body.tree().children(ref, node);
@@ -182,6 +183,7 @@ void DistanceQuery::open(const Pair& pair) {
         add(kOpensA ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
     };
     if (TreeView::is_leaf(node)) {
+        body.tree().prepare(ref);
         for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
             const NodeRef child = TreeView::triangle_ref(ref, i);
             add_child(child, bound(reach(body, child), other));

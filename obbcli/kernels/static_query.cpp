@@ -236,6 +236,7 @@ void StaticQuery::open_leaf(bool opens_a) {
     Pair& top = stack_.back();
     const NodeRef leaf = opens_a ? top.a : top.b, other = opens_a ? top.b : top.a;
     const PosedTree &body = opens_a ? a_ : b_, &others = opens_a ? b_ : a_;
+    body.tree().prepare(leaf);
     const std::uint32_t begin = leaf.begin + top.next;
     const std::uint32_t end = begin + std::min(kTrianglesAPop, leaf.end - begin);
     top.next = end - leaf.begin;

@@ -90,6 +90,11 @@ struct TreeView {
     // Of a node that is no leaf.
     [[nodiscard]] std::array<NodeRef, 2> children(const NodeRef& ref, const Node& node) const {
         prepare(ref);
+        return links(ref, node);
+    }
+
+    // The same where it does not matter whether what stands under the node may be read.
+    [[nodiscard]] static std::array<NodeRef, 2> links(const NodeRef& ref, const Node& node) {
         if (node.split <= ref.begin || node.split >= ref.end) {
             throw TreeError("a split lies outside its range");
         }

@@ -11,7 +11,7 @@ from typing import get_args
 import pytest
 from cube_files import cube, stl
 
-from obbcli import ObbTree, treefile
+from obbcli import ObbTree, treeheader
 from obbcli.cli import build as build_module
 
 
@@ -73,8 +73,8 @@ def test_build_passes_its_options_on(here, obbtree):
 
 
 def test_build_offers_all_fits_and_splits():
-    assert get_args(treefile.Fit) == build_module.FITS
-    assert get_args(treefile.Split) == build_module.SPLITS
+    assert get_args(treeheader.Fit) == build_module.FITS
+    assert get_args(treeheader.Split) == build_module.SPLITS
 
 
 def test_build_into_a_directory(here, obbtree):

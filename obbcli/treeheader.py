@@ -1,0 +1,253 @@
+"""The header of tree files (`.obbt`): what they hold, how it was made, and checksums over it.
+
+All is little-endian: 64 fixed bytes (`FIXED`), the description as JSON, one CRC-32 for each block
+of 4096 data bytes, zeros up to a multiple of 64; a CRC-32 of its own guards it. CRC-32 finds every
+flipped byte and is known everywhere; blocks are the size of a page, so that a reader can verify
+just what it touches.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, BinaryIO, Literal, get_args
+
+import numpy as np
+
+from obbcli.errors import TreeFileError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# As in PNG: the first byte is no text, and line ends show a transfer in text mode.
+MAGIC = b"\x89OBBT\r\n\x1a"
+VERSION = 1
+BLOCK_BYTES = 4096
+ALIGNMENT = 64
+
+Fit = Literal["triangles", "points", "hull", "min-volume", "axis-aligned"]
+Split = Literal["median", "center"]
+
+# magic, version, header bytes, header CRC, block bytes, file bytes, boxes, triangles, vertices,
+# scale exponent, description bytes
+FIXED = struct.Struct("<8sIIIIQQQQiI")
+_CRC_OFFSET = 16
+NODE_BYTES = 64
+_CORNERS_BYTES, _ID_BYTES, _VERTEX_BYTES = 12, 4, 24
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """How a tree was made, and from what.
+
+    Attributes:
+        fit: how boxes were oriented.
+        split: how nodes were parted.
+        leaf_size: a node of so many triangles is a leaf.
+        max_depth: the depth at which a node is a leaf; None: no limit.
+        source: name of the mesh file; None for a mesh made in code.
+        source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None likewise.
+        tool_version: the obbtree that built it.
+    """
+
+    fit: str
+    split: str
+    leaf_size: int
+    max_depth: int | None
+    source: str | None
+    source_sha256: str | None
+    tool_version: str
+
+
+def is_tree_file(head: bytes) -> bool:
+    """Return whether a file that begins with `head` claims to be a tree file."""
+    return head[: len(MAGIC)] == MAGIC
+
+
+def read_header(file: BinaryIO, name: str) -> Header:
+    """Return the header of a tree file that was just opened.
+
+    Raises:
+        TreeFileError: no tree file, another version, truncated, or damaged in its header.
+        OSError: the file cannot be read.
+    """
+    size = os.fstat(file.fileno()).st_size
+    head = file.read(FIXED.size)
+    if len(head) == FIXED.size:
+        # No more than there is, whatever it says of itself.
+        head += file.read(max(0, min(FIXED.unpack(head)[2], size) - FIXED.size))
+    return checked_header(memoryview(head), size, name)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Header:
+    """What stands before the data of a tree file, checked.
+
+    Attributes:
+        header_bytes: where the data begin.
+        node_count: boxes.
+        triangle_count: triangles.
+        vertex_count: vertices.
+        scale_exponent: boxes are in mesh units times 2 to the minus this.
+        description: how the tree was made.
+        checksums: uint32 (B,), the CRC-32 of each block.
+    """
+
+    header_bytes: int
+    node_count: int
+    triangle_count: int
+    vertex_count: int
+    scale_exponent: int
+    description: Description
+    checksums: NDArray[np.uint32]
+
+    @property
+    def section_bytes(self) -> tuple[int, int, int, int]:
+        """Bytes of boxes, corners, triangle ids and vertices, without what pads them."""
+        return _section_bytes(self.node_count, self.triangle_count, self.vertex_count)
+
+
+def checked_header(data: memoryview, size: int, name: str) -> Header:
+    """Return the header after comparing everything in it with the file and with itself.
+
+    Args:
+        data: the file's bytes, at least those of its header where it has so many.
+        size: of the file.
+        name: the place named in errors.
+    """
+    if len(data) < FIXED.size or not is_tree_file(bytes(data[: len(MAGIC)])):
+        raise TreeFileError(name, "is not a tree file", "make one with obbtree build")
+    (_, version, header_bytes, crc, block_bytes, file_bytes, *counts, exponent, text_bytes) = (
+        FIXED.unpack_from(data)
+    )
+    if version != VERSION:
+        raise TreeFileError(
+            name,
+            f"is of version {version}, this obbtree reads version {VERSION}",
+            "build it again, or use a newer obbtree",
+        )
+    if file_bytes != size:
+        raise TreeFileError(
+            name, f"is {size} bytes long, its header says {file_bytes}", "build it again"
+        )
+    if not FIXED.size <= header_bytes <= len(data) or crc != _header_crc(data[:header_bytes]):
+        raise TreeFileError(name, "is damaged in its header", "build it again")
+    nodes, triangles, vertices = counts
+    data_bytes = sum(map(round_up, _section_bytes(nodes, triangles, vertices)))
+    blocks = -(-data_bytes // BLOCK_BYTES)
+    wanted = round_up(FIXED.size + text_bytes + 4 * blocks)
+    if (
+        (block_bytes, header_bytes, file_bytes) != (BLOCK_BYTES, wanted, wanted + data_bytes)
+        or not 1 <= triangles < 2**31
+        or not min(1, triangles - 1) <= nodes < triangles
+        or not abs(exponent) <= 1100
+    ):
+        raise TreeFileError(name, "has counts that contradict each other", "build it again")
+    text = bytes(data[FIXED.size : FIXED.size + text_bytes])
+    return Header(
+        header_bytes=header_bytes,
+        node_count=nodes,
+        triangle_count=triangles,
+        vertex_count=vertices,
+        scale_exponent=exponent,
+        description=_description(text, name),
+        checksums=np.frombuffer(data, "<u4", blocks, FIXED.size + text_bytes),
+    )
+
+
+def _description(text: bytes, name: str) -> Description:
+    """Return the description, whose every field must be there, of its type and of use."""
+    import json
+
+    optional_text, optional_number = (str, type(None)), (int, type(None))
+    types: dict[str, type | tuple[type, ...]] = {
+        "fit": str,
+        "split": str,
+        "leaf_size": int,
+        "max_depth": optional_number,
+        "source": optional_text,
+        "source_sha256": optional_text,
+        "tool_version": str,
+    }
+    try:
+        fields = json.loads(text)
+        sound = fields.keys() == types.keys() and all(
+            isinstance(fields[key], kind) and not isinstance(fields[key], bool)
+            for key, kind in types.items()
+        )
+    except (ValueError, AttributeError, RecursionError) as fault:
+        raise TreeFileError(name, "has a description that is no JSON object") from fault
+    if not sound:
+        raise TreeFileError(name, "lacks something in its description", "build it again")
+    description = Description(**fields)
+    allowed = {
+        "fit": description.fit in get_args(Fit),
+        "split": description.split in get_args(Split),
+        "leaf_size": description.leaf_size >= 1,
+        "max_depth": description.max_depth is None or description.max_depth >= 0,
+    }
+    for field, is_allowed in allowed.items():
+        if not is_allowed:
+            raise TreeFileError(
+                name, f"says that {field} is {fields[field]!r}, which no tree has", "build it again"
+            )
+    return description
+
+
+def pack_header(
+    counts: tuple[int, int, int],
+    scale_exponent: int,
+    description: Description,
+    checksums: NDArray[np.uint32],
+    data_bytes: int,
+) -> bytes:
+    """Return a whole header, its own checksum included.
+
+    Args:
+        counts: of boxes, triangles and vertices.
+        scale_exponent: as in `Header`.
+        description: how the tree was made.
+        checksums: of each block of data.
+        data_bytes: length of all data.
+    """
+    # Not at hand before: questions about meshes start without it.
+    import json
+
+    text = json.dumps(asdict(description)).encode()
+    table = checksums.astype("<u4", copy=False).tobytes()
+    header_bytes = round_up(FIXED.size + len(text) + len(table))
+    fixed = FIXED.pack(
+        MAGIC,
+        VERSION,
+        header_bytes,
+        0,
+        BLOCK_BYTES,
+        header_bytes + data_bytes,
+        *counts,
+        scale_exponent,
+        len(text),
+    )
+    header = bytearray((fixed + text + table).ljust(header_bytes, b"\0"))
+    struct.pack_into("<I", header, _CRC_OFFSET, _header_crc(memoryview(header)))
+    return bytes(header)
+
+
+def _section_bytes(nodes: int, triangles: int, vertices: int) -> tuple[int, int, int, int]:
+    return (
+        nodes * NODE_BYTES,
+        triangles * _CORNERS_BYTES,
+        triangles * _ID_BYTES,
+        vertices * _VERTEX_BYTES,
+    )
+
+
+def _header_crc(header: memoryview) -> int:
+    """Return the CRC-32 of a header, its own four bytes left out."""
+    return zlib.crc32(header[_CRC_OFFSET + 4 :], zlib.crc32(header[:_CRC_OFFSET]))
+
+
+def round_up(count: int) -> int:
+    """Return the next multiple of the alignment of sections."""
+    return -(-count // ALIGNMENT) * ALIGNMENT
