@@ -87,11 +87,8 @@ sanitize: .build/sanitize/installed
 	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
 
-# Only what such questions need: the whole library would take minutes to compile.
 THREAD_TEST := tests/threads/growing_trees.cpp
-THREAD_KERNELS := $(addprefix $(KERNELS)/,$(addsuffix .cpp,tree tree_build fit static_query static_triangles triangle_lanes distance_query placed_boxes \
-  query_frame predicates closest_points overlap_point convex_polygon contact_point fit_hull fit_min_volume calipers \
-  convex_hull quick_hull grid_points hull_body found_box))
+THREAD_KERNELS := $(filter-out $(KERNELS)/bindings%,$(filter %.cpp,$(SOURCES)))
 
 sanitize-threads: .build/growing_trees
 	.build/growing_trees
