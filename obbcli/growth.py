@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from obbcli import __version__, kernels
+from obbcli.cores import thread_count
 from obbcli.errors import MeshError
 from obbcli.treefile import TreeArrays
 from obbcli.treeheader import Description, Fit, Split
@@ -29,10 +30,10 @@ _SPLITS = {"median": kernels.Split.MEDIAN, "center": kernels.Split.CENTER}
 _NO_LIMIT = 2**32 - 1
 
 _HULL_FITS = ("hull", "min-volume")
-# A slice of a build between two looks at signals and progress: tens of milliseconds.
+# What a thread does of a build between two looks at signals and progress: tens of milliseconds.
 _TRIANGLES_A_SLICE = 200_000
 _HULL_TRIANGLES_A_SLICE = 10_000
-# What a build holds at its peak: the moving triangles, keys and boxes; then the arrays of the tree.
+# What a build holds at its peak: the moving triangles, keys and boxes; and the arrays of the tree.
 _BUILD_BYTES_A_TRIANGLE = 200
 # The corners of all triangles, as they are and on the hull's grid.
 _HULL_BYTES_A_TRIANGLE = 200
@@ -45,9 +46,13 @@ class Growth:
         mesh: what the tree is over.
         fit, split, leaf_size, max_depth: as `ObbTree.build`.
         max_memory: bytes that the build may need at its peak. None: no limit.
+        on_demand: whether questions may be asked before the tree is whole.
+        threads: how many work on large nodes, or on a tree that is made at once. None: as many as
+            this process may use cores. They change nothing but the time it takes.
 
     Raises:
         MeshError: an option is none of those, or more memory is needed.
+        ObbError: `threads` is no positive integer.
     """
 
     def __init__(
@@ -58,10 +63,14 @@ class Growth:
         leaf_size: int,
         max_depth: int | None,
         max_memory: int | None,
+        *,
+        on_demand: bool = True,
+        threads: int | None = None,
     ) -> None:
         _check_options(fit, split, leaf_size, max_depth)
         _check_memory(mesh, fit, max_memory)
         self.mesh = mesh
+        self._threads = thread_count(threads)
         self.description = Description(
             fit=fit,
             split=split,
@@ -78,6 +87,8 @@ class Growth:
             _SPLITS[split],
             min(leaf_size, _NO_LIMIT),
             _NO_LIMIT if max_depth is None else min(max_depth, _NO_LIMIT),
+            on_demand,
+            self._threads,
         )
         self.kernel = self._builder.tree()
         self._lock = Lock()
@@ -96,7 +107,7 @@ class Growth:
                 return self._arrays
             by_hull = self.description.fit in _HULL_FITS
             work = _HULL_TRIANGLES_A_SLICE if by_hull else _TRIANGLES_A_SLICE
-            while not self._builder.advance(work):
+            while not self._builder.advance(work * self._threads):
                 if progress is not None:
                     progress(self._builder.progress())
             nodes, corners, triangle_ids = self._builder.arrays()

@@ -108,7 +108,7 @@ class ObbTree:
             OSError: the file cannot be read.
         """
         mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
-        growth = Growth(mesh, fit, split, leaf_size, max_depth, max_memory)
+        growth = Growth(mesh, fit, split, leaf_size, max_depth, max_memory, on_demand=lazy)
         return cls(growth if lazy else growth.arrays(progress))
 
     @classmethod

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+import tree_oracles
 from scenes import POSE_CLASSES
-from tree_meshes import NASTY, bumpy_grid, soup, staircase
+from tree_meshes import NASTY, bumpy_grid, needles, soup, staircase
 
 import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, growth
@@ -195,3 +196,69 @@ def test_threads_that_share_a_growing_tree_get_the_answers_of_one(tmp_path: Path
         assert found == wanted
         for tree, same in zip(trees, whole, strict=True):
             assert content(tree._arrays) == content(same._arrays)
+
+
+# Ranges of more than 512 triangles are treated otherwise than small ones.
+LARGE = {name: make for name, make in NASTY.items() if name not in {"one", "two", "three"}} | {
+    "large soup": lambda: soup(1500),
+    "large needles": lambda: needles(1500),
+    "large sheet": lambda: bumpy_grid(30),
+    "large staircase": lambda: staircase(600),
+}
+
+
+def far_from(surface: Any, size: float) -> Any:
+    """Return a surface with one triangle more, so far away that floats cannot tell the others."""
+    vertices, triangles = surface
+    stray = np.array([[size, 0, 0], [size, size / 2, 0], [size, 0, size / 3]])
+    return np.vstack([vertices, stray]), np.vstack([triangles, len(vertices) + np.arange(3)])
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_large_ranges_hold_their_triangles_whatever_they_are(name: str, tmp_path: Path) -> None:
+    vertices, triangles = LARGE[name]()
+    mesh = Mesh(vertices, np.tile(triangles, (1 + 599 // len(triangles), 1)))
+
+    for fit, split in itertools.product(FITS, SPLITS):
+        whole = ObbTree.build(mesh, fit, split, lazy=False)
+        whole.check()
+        lazy = ObbTree.build(mesh, fit, split)
+        lazy.kernel.levels()  # a walk from node to node
+        assert lazy.node_count == len(mesh.triangles) - 1
+        assert content(lazy._arrays) == content(whole._arrays)
+    whole.save(tmp_path / "whole.obbt")
+    read = tree_oracles.parse((tmp_path / "whole.obbt").read_bytes())
+    assert tree_oracles.faults(read, mesh.vertices, mesh.triangles) == []
+
+
+@pytest.mark.parametrize("split", SPLITS)
+@pytest.mark.parametrize("size", [1e3, 1e6, 1e12])
+def test_a_stray_triangle_leaves_the_boxes_of_the_others_as_tight(size: float, split: Any) -> None:
+    probe = Mesh(*soup(200))
+
+    def box_tests(surface: Any) -> int:
+        tree = ObbTree.build(Mesh(*surface), split=split)
+        spots = [(5.0 * x, 5.0 * y, 1.5) for x in range(8) for y in range(8)]
+        answers = [obbcli.collide(tree, Body(probe, pose=Pose(translation=at))) for at in spots]
+        tree.check()
+        return sum(answer.stats.box_tests for answer in answers)
+
+    assert box_tests(far_from(bumpy_grid(40), size)) < 1.5 * box_tests(bumpy_grid(40))
+
+
+def test_any_number_of_threads_makes_the_same_tree() -> None:
+    surfaces = [soup(150_000), bumpy_grid(300), far_from(bumpy_grid(280), 1e9)]
+    for surface, split in itertools.product(surfaces, SPLITS):
+        mesh = Mesh(*surface)
+
+        made = [
+            content(growth.Growth(mesh, "triangles", split, 1, None, None, **options).arrays())
+            for options in (
+                {"on_demand": False, "threads": 1},
+                {"on_demand": False, "threads": 2},
+                {"on_demand": False, "threads": 5},
+                {"on_demand": True, "threads": 3},
+            )
+        ]
+
+        assert all(one == made[0] for one in made)

@@ -65,6 +65,7 @@ NEEDED = {
     "obbcli.cli.progress",
     "obbcli.cli.question",
     "obbcli.cli.types",
+    "obbcli.cores",
     "obbcli.errors",
     "obbcli.files",
     "obbcli.growth",

@@ -41,12 +41,13 @@ struct TreeBuilder {
 
 void init_builder(TreeBuilder* self, const Rows<double, 3>& vertices,
                   const Rows<std::uint32_t, 3>& corners, obb::Fit fit, obb::Split split,
-                  std::uint32_t leaf_size, std::uint32_t max_depth) {
+                  std::uint32_t leaf_size, std::uint32_t max_depth, bool on_demand,
+                  unsigned threads) {
     const auto v = records<obb::Vec3>(vertices);
     const auto c = records<obb::Corners>(corners);
     const obb::BuildOptions options{fit, split, leaf_size, max_depth};
     nb::gil_scoped_release release;
-    new (self) TreeBuilder{vertices, corners, obb::TreeBuilder(v, c, options)};
+    new (self) TreeBuilder{vertices, corners, obb::TreeBuilder(v, c, options, on_demand, threads)};
 }
 
 using Arrays =
@@ -108,7 +109,7 @@ void bind_tree(nb::module_& m) {
 
     nb::class_<TreeBuilder>(m, "TreeBuilder")
         .def("__init__", &init_builder, "vertices"_a, "corners"_a, "fit"_a, "split"_a,
-             "leaf_size"_a, "max_depth"_a)
+             "leaf_size"_a, "max_depth"_a, "on_demand"_a, "threads"_a)
         .def(
             "advance",
             [](TreeBuilder& self, std::uint64_t work) { return self.builder.advance(work); },

@@ -2,104 +2,141 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace obb {
 
-// Eberly's 6.1.3 with its weights mended: the mean of a triangle is the third of its corners' sum,
-// its second moment (sum_j P_j P_j^T + (sum P)(sum P)^T) / 12; the printed form loses the first
-// term, has rank one and is zero for a single triangle. The common factors 3 and 12 wait in
-// principal_axes().
-void Moments::add_weighted(const Triangle& t, double weight, double corner_share,
-                           double sum_share) {
-    const Vec3 s = t[0] + t[1] + t[2];
-    const auto second = [&](std::size_t i, std::size_t k) {
-        const double corners = t[0][i] * t[0][k] + t[1][i] * t[1][k] + t[2][i] * t[2][k];
-        return weight * (corner_share * corners + sum_share * (s[i] * s[k]));
-    };
-    weight_ += weight;
-    first_ = first_ + weight * s;
-    second_[0] += second(0, 0);
-    second_[1] += second(0, 1);
-    second_[2] += second(0, 2);
-    second_[3] += second(1, 1);
-    second_[4] += second(1, 2);
-    second_[5] += second(2, 2);
-}
-
-void Moments::add(const Triangle& t, Fit fit) {
-    if (fit == Fit::kPoints) {
-        add_corners(t);
-    } else {
-        add_weighted(t, norm(cross(t[1] - t[0], t[2] - t[0])), 1.0, 1.0);
-    }
-}
-
-// Three point masses: (sum_j P_j P_j^T) / 3 = 4 (sum_j P_j P_j^T) / 12.
-void Moments::add_corners(const Triangle& t) { add_weighted(t, 1.0, 4.0, 0.0); }
-
 namespace {
 
-using Matrix = std::array<std::array<double, 3>, 3>;
+template <typename Reals>
+using Matrix = std::array<std::array<Reals, 3>, 3>;
 
-// One Jacobi rotation that makes m[p][q] zero. Golub & Van Loan 2013, Algorithm 8.5.1.
-void rotate(Matrix& m, Matrix& vectors, std::size_t p, std::size_t q) {
-    if (m[p][q] == 0.0) {
-        return;
-    }
-    const double tau = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-    const double t = std::copysign(1.0, tau) / (std::fabs(tau) + std::sqrt(1.0 + tau * tau));
-    const double c = 1.0 / std::sqrt(1.0 + t * t);
-    const double s = t * c;
-    const std::size_t r = 3 - p - q;
-    const double mpq = m[p][q], mrp = m[r][p], mrq = m[r][q];
+// One Jacobi rotation, in the lanes of the mask, that makes m[p][q] zero. Golub & Van Loan 2013,
+// Algorithm 8.5.1.
+template <std::size_t p, std::size_t q, typename Reals>
+OBB_INLINE void rotate(Matrix<Reals>& m, Matrix<Reals>& vectors,
+                       const typename Reals::Mask& wanted) {
+    constexpr std::size_t r = 3 - p - q;
+    constexpr double kNothing = 0x1p-500; // its square vanishes
+    const Reals mpq = m[p][q], mrp = m[r][p], mrq = m[r][q];
+    const Reals d = m[q][q] - m[p][p];
+    const Reals root = root_of(d * d + 4.0 * (mpq * mpq));
+    const Reals tangent = (mpq + mpq) / select(d < 0.0, d - root, d + root);
+    const auto turns = wanted & (magnitude(mpq) > kNothing);
+    const Reals t = select(turns, tangent, 0.0);
+    const Reals c = 1.0 / root_of(1.0 + t * t);
+    const Reals s = t * c;
     m[p][p] -= t * mpq;
     m[q][q] += t * mpq;
-    m[p][q] = m[q][p] = 0.0;
+    m[p][q] = m[q][p] = select(turns, 0.0, mpq);
     m[r][p] = m[p][r] = c * mrp - s * mrq;
     m[r][q] = m[q][r] = s * mrp + c * mrq;
     for (auto& row : vectors) {
-        const double vp = row[p], vq = row[q];
+        const Reals vp = row[p], vq = row[q];
         row[p] = c * vp - s * vq;
         row[q] = s * vp + c * vq;
     }
 }
 
-} // namespace
-
-// Jacobi uses only + - * / and sqrt, so that the same mesh gives the same tree on every machine.
-std::array<Vec3, 3> Moments::principal_axes() const {
+// Eigenvectors as columns. Jacobi uses only + - * / and sqrt, so that the same mesh gives the same
+// tree on every machine; a lane that has converged is left alone, so that its company changes
+// nothing.
+template <typename Reals>
+OBB_INLINE Matrix<Reals> eigenvectors_of(Matrix<Reals>& m) {
     // The convergence is quadratic: the axes are as good as the float32 quaternion that keeps them
     // once the off-diagonal part is this small, and a later sweep changes nothing that is stored.
     constexpr double kConverged = 0x1p-60;
     constexpr int kMaxSweeps = 16;
-
-    const Vec3 mean = (1.0 / weight_) * first_;
-    const auto covariance = [&](std::size_t k, double a, double b) {
-        return second_[k] / weight_ / 12.0 - a * b / 9.0;
-    };
-    Matrix m;
-    m[0][0] = covariance(0, mean.x, mean.x);
-    m[1][1] = covariance(3, mean.y, mean.y);
-    m[2][2] = covariance(5, mean.z, mean.z);
-    m[0][1] = m[1][0] = covariance(1, mean.x, mean.y);
-    m[0][2] = m[2][0] = covariance(2, mean.x, mean.z);
-    m[1][2] = m[2][1] = covariance(4, mean.y, mean.z);
-
-    Matrix v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Matrix<Reals> v;
+    v[0][0] = v[1][1] = v[2][2] = 1.0;
     for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-        const double off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
-        const double on = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
-        if (!(off > kConverged * on)) { // also when the sums are not numbers
+        const Reals off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
+        const Reals on = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
+        const auto wanted = off > kConverged * on; // never where they are not numbers
+        if (!wanted.is_any()) {
             break;
         }
-        rotate(m, v, 0, 1);
-        rotate(m, v, 0, 2);
-        rotate(m, v, 1, 2);
+        rotate<0, 1>(m, v, wanted);
+        rotate<0, 2>(m, v, wanted);
+        rotate<1, 2>(m, v, wanted);
     }
-    const Vec3 first{v[0][0], v[1][0], v[2][0]};
-    const Vec3 second{v[0][1], v[1][1], v[2][1]};
-    return {first, second, cross(first, second)};
+    return v;
+}
+
+// Of trace 1, so that squares neither vanish nor overflow.
+template <typename Reals>
+OBB_INLINE Matrix<Reals> covariances_of(std::span<const Moments, kOrientationsAtOnce> moments) {
+    Reals weight;
+    std::array<Reals, 3> first;
+    std::array<Reals, 6> second;
+    for (std::size_t lane = 0; lane < kOrientationsAtOnce; ++lane) {
+        const Moments& one = moments[lane];
+        weight.set(lane, one.weight);
+        for (std::size_t i = 0; i < 3; ++i) {
+            first[i].set(lane, one.first[i]);
+        }
+        for (std::size_t k = 0; k < 6; ++k) {
+            second[k].set(lane, one.second[k]);
+        }
+    }
+    Matrix<Reals> m;
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = i; j < 3; ++j, ++k) {
+            m[i][j] = m[j][i] =
+                second[k] / weight / 12.0 - first[i] / weight * (first[j] / weight) / 9.0;
+        }
+    }
+    const Reals trace = magnitude(m[0][0]) + magnitude(m[1][1]) + magnitude(m[2][2]);
+    for (auto& row : m) {
+        for (Reals& entry : row) {
+            entry /= trace;
+        }
+    }
+    return m;
+}
+
+// Two of the eigenvectors of each covariance matrix, and all eigenvalues.
+struct Eigensystem {
+    Vec3 first, second;
+    Vec3 values;
+};
+using Eigensystems = std::array<Eigensystem, kOrientationsAtOnce>;
+
+template <std::size_t kBytes>
+OBB_INLINE void find_eigensystems(std::span<const Moments, kOrientationsAtOnce> moments,
+                                  Eigensystems& found) {
+    auto m = covariances_of<Lanes<double, kOrientationsAtOnce, kBytes>>(moments);
+    const auto v = eigenvectors_of(m); // what is left on the diagonal are the eigenvalues
+    for (std::size_t lane = 0; lane < kOrientationsAtOnce; ++lane) {
+        found[lane] = {{v[0][0][lane], v[1][0][lane], v[2][0][lane]},
+                       {v[0][1][lane], v[1][1][lane], v[2][1][lane]},
+                       {m[0][0][lane], m[1][1][lane], m[2][2][lane]}};
+    }
+}
+
+Eigensystems eigensystems_of(std::span<const Moments, kOrientationsAtOnce> moments) {
+    Eigensystems found;
+    in_registers([&]<std::size_t kBytes>() { find_eigensystems<kBytes>(moments, found); });
+    return found;
+}
+
+} // namespace
+
+void Moments::add(const Triangle& t, bool by_corners) {
+    LaneTriangles<Doubles<kNarrow>> lanes;
+    for (std::size_t k = 0; k < 9; ++k) {
+        lanes[k / 3][k % 3] = t[k / 3][k % 3];
+    }
+    MomentSums<Doubles<kNarrow>> sums;
+    sums.add(lanes, Doubles<kNarrow>::first(1), by_corners);
+    sums.add_to(*this);
+}
+
+std::array<Vec3, 3> principal_axes(const Moments& moments) {
+    std::array<Moments, kOrientationsAtOnce> one;
+    one[0] = moments;
+    const Eigensystem found = eigensystems_of(one)[0];
+    return {found.first, found.second, cross(found.first, found.second)};
 }
 
 // Shepperd 1978: divide by the largest component, so that nothing cancels.
@@ -130,6 +167,22 @@ std::array<float, 4> quaternion_of(const std::array<Vec3, 3>& a) {
     const float length = result[0] * result[0] + result[1] * result[1] + result[2] * result[2] +
                          result[3] * result[3];
     return length > 0.5f ? result : std::array<float, 4>{1, 0, 0, 0}; // not a number: any axes do
+}
+
+void orient(std::span<const Moments, kOrientationsAtOnce> moments,
+            std::span<Orientation, kOrientationsAtOnce> orientations) {
+    const Eigensystems found = eigensystems_of(moments);
+    for (std::size_t lane = 0; lane < kOrientationsAtOnce; ++lane) {
+        Orientation& orientation = orientations[lane];
+        orientation = {};
+        if (!moments[lane].is_empty()) {
+            const auto& [first, second, values] = found[lane];
+            orientation.rotation = quaternion_of({first, second, cross(first, second)});
+            orientation.axes = axes_of(orientation.rotation);
+            orientation.widest = values.x >= values.y ? (values.x >= values.z ? 0 : 2)
+                                                      : (values.y >= values.z ? 1 : 2);
+        }
+    }
 }
 
 } // namespace obb

@@ -14,14 +14,14 @@ std::array<Vec3, 3> hull_axes(std::span<const Vec3> points, const ConvexHull& hu
     const auto at = [&](std::uint32_t i) { return points[i] - origin; };
     Moments moments;
     for (const auto& [a, b, c] : hull.triangles) {
-        moments.add({at(a), at(b), at(c)}, Fit::kTriangles);
+        moments.add({at(a), at(b), at(c)}, false);
     }
     if (moments.is_empty()) {
         for (const std::uint32_t vertex : hull.vertices) {
-            moments.add_corners({at(vertex), at(vertex), at(vertex)});
+            moments.add({at(vertex), at(vertex), at(vertex)}, true);
         }
     }
-    return moments.principal_axes();
+    return principal_axes(moments);
 }
 
 std::array<float, 4> hull_rotation(std::span<const Vec3> points, Fit fit, bool is_root) {

@@ -74,7 +74,7 @@ Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
 }
 
 int faults(const Surface& s, const obb::BuildOptions& options) {
-    obb::TreeBuilder whole(s.vertices, s.corners, options);
+    obb::TreeBuilder whole(s.vertices, s.corners, options, false, 2);
     while (!whole.advance(1000)) {
     }
     std::vector<Answer> wanted;
@@ -83,8 +83,8 @@ int faults(const Surface& s, const obb::BuildOptions& options) {
     }
     int found = 0;
     for (int round = 0; round < kRounds; ++round) {
-        obb::TreeBuilder tree_a(s.vertices, s.corners, options);
-        obb::TreeBuilder tree_b(s.vertices, s.corners, options);
+        obb::TreeBuilder tree_a(s.vertices, s.corners, options, true, 1);
+        obb::TreeBuilder tree_b(s.vertices, s.corners, options, true, 2);
         const obb::TreeView a = tree_a.view(), b = tree_b.view();
         std::vector<Answer> answers(kThreads * kPoses);
         std::vector<std::thread> threads;
