@@ -162,8 +162,9 @@ def triangle_pairs(
     trees = trees_of(bodies)
     (tree_a, tree_b), (body_a, body_b) = trees, bodies
     try:
-        return kernels.triangle_pairs(
+        found, _counts = kernels.triangle_pairs(
             tree_a.kernel, body_a.pose.kernel, tree_b.kernel, body_b.pose.kernel, most, workers
         )
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
+    return found

@@ -99,10 +99,12 @@ void advance_in_parts(obb::StaticQuery& query, unsigned threads) {
     query.join(parts);
 }
 
-// Which pairs a limit leaves depends on the order in which they are found: there, one thread works.
-Owned<std::int64_t, -1, 2> triangle_pairs(const Tree& a, const obb::Pose& pose_a, const Tree& b,
-                                          const obb::Pose& pose_b, std::uint64_t limit,
-                                          unsigned threads) {
+// The pairs and what they cost. Which ones a limit leaves depends on the order in which they are
+// found: there, one thread works.
+std::pair<Owned<std::int64_t, -1, 2>, Counts> triangle_pairs(const Tree& a, const obb::Pose& pose_a,
+                                                             const Tree& b, const obb::Pose& pose_b,
+                                                             std::uint64_t limit,
+                                                             unsigned threads) {
     // Below so many pops, threads cost more than they save.
     constexpr std::uint64_t kPopsAlone = 1024;
     constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
@@ -116,7 +118,7 @@ Owned<std::int64_t, -1, 2> triangle_pairs(const Tree& a, const obb::Pose& pose_a
     } else if (!advance(query, brief, kPopsAlone)) {
         advance_in_parts(query, threads);
     }
-    return pairs_of(query);
+    return {pairs_of(query), counts_of(query)};
 }
 
 } // namespace
