@@ -37,6 +37,7 @@ LAYERS = (
         "treefile",
     ),
     ("growth", "opened"),
+    ("treefacts",),
     ("tree",),
     (
         "question",

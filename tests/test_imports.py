@@ -90,6 +90,7 @@ NEEDED = {
     "obbcli.report.table",
     "obbcli.rotation",
     "obbcli.tree",
+    "obbcli.treefacts",
     "obbcli.treefile",
     "obbcli.treeheader",
     "obbcli.verdict",
