@@ -1,6 +1,5 @@
 #include "closest_points.hpp"
 
-#include "extremes.hpp"
 #include "local_pair.hpp"
 #include "nearest_points.hpp"
 #include "twofold.hpp"
@@ -55,36 +54,6 @@ template <typename Real>
 }
 
 } // namespace
-
-DistanceBound distance_bound(const Triangle& a, const Triangle& b) {
-    const LocalPair<double> pair = localized<double>(a, b);
-    double square = 0;
-    const double slack = 4 * kUnitRoundoff * pair.extent;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double low_a = smallest(0.0, pair.a[1][k], pair.a[2][k]);
-        const double high_a = largest(0.0, pair.a[1][k], pair.a[2][k]);
-        const double low_b = smallest(pair.b[0][k], pair.b[1][k], pair.b[2][k]);
-        const double high_b = largest(pair.b[0][k], pair.b[1][k], pair.b[2][k]);
-        const double gap = larger(larger(low_b - high_a, low_a - high_b) - slack, 0.0);
-        square += gap * gap;
-    }
-    double low = std::sqrt(square) * (1 - 8 * kUnitRoundoff);
-    const auto along = [&](const Vec3& n) {
-        const double a1 = dot(n, pair.a[1]), a2 = dot(n, pair.a[2]);
-        const double b0 = dot(n, pair.b[0]), b1 = dot(n, pair.b[1]), b2 = dot(n, pair.b[2]);
-        const double gap = larger(smallest(b0, b1, b2) - largest(0.0, a1, a2),
-                                  smallest(0.0, a1, a2) - largest(b0, b1, b2));
-        const double nn = dot(n, n);
-        if (gap > 0 && nn > kLeastSquare) {
-            // As NearestPoints::bound_along().
-            const double length = gap / std::sqrt(nn);
-            low = larger(low, length - 8 * kUnitRoundoff * (length + pair.extent));
-        }
-    };
-    along(cross(pair.a[1], pair.a[2]));
-    along(cross(pair.b[1] - pair.b[0], pair.b[2] - pair.b[0]));
-    return {low, pair.exponent};
-}
 
 bool precedes(const Triangle& a, const Triangle& b) {
     for (std::size_t k = 0; k < 3; ++k) {

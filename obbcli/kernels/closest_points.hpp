@@ -30,14 +30,6 @@ struct TriangleDistance {
     Vec3 point_a, point_b;
 };
 
-// A lower bound that is cheap: gaps between the bounding boxes and along the two normals, in mesh
-// units times 2^-exponent.
-struct DistanceBound {
-    double low;
-    int exponent;
-};
-[[nodiscard]] DistanceBound distance_bound(const Triangle& a, const Triangle& b);
-
 // In doubles: the bounds lie a few units of roundoff of the pair's extent apart in ordinary cases.
 // Degenerate triangles are shapes like any other.
 [[nodiscard]] TriangleDistance measure(const Triangle& a, const Triangle& b);

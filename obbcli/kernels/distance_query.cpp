@@ -1,15 +1,11 @@
 #include "distance_query.hpp"
 
 #include "box_distance.hpp"
-#include "predicates.hpp"
 #include "query_frame.hpp"
-#include "scale.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
-#include <utility>
 
 namespace obb {
 
@@ -21,26 +17,12 @@ constexpr double kSettled = 0x1p-50;
 // it is enough to know the rest to a unit in the last place of the scene's size.
 constexpr std::uint64_t kManyTies = 256;
 constexpr double kSettledOfMany = 0x1p-50;
-// So many pairs of triangles are measured one by one rather than by smaller boxes.
-constexpr std::uint32_t kBatch = 6;
+// Boxes so much smaller than the other, as a share of its size, wait for it to be opened first.
+constexpr double kMuchSmaller = 0.5;
 // A search that takes more pops than this does pairs of so few triangles depth-first: the queue
 // costs more than it saves once the least distance is about known.
 constexpr std::uint64_t kPatience = 512;
 constexpr std::uint32_t kSmall = 512;
-
-// A length times 2^exponent, one place further down or up where that rounds.
-[[nodiscard]] double scaled_down(double length, int exponent) {
-    const double result = std::ldexp(length, exponent);
-    return std::ldexp(result, -exponent) > length ? std::nextafter(result, 0.0) : result;
-}
-[[nodiscard]] double scaled_up(double length, int exponent) {
-    const double result = std::ldexp(length, exponent);
-    return std::ldexp(result, -exponent) < length ? std::nextafter(result, HUGE_VAL) : result;
-}
-
-[[nodiscard]] std::pair<std::int64_t, std::int64_t> ids(const DistanceBounds& b) {
-    return {b.triangle_a, b.triangle_b};
-}
 
 } // namespace
 
@@ -55,68 +37,45 @@ DistanceQuery::DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeVi
     tolerance_ = std::ldexp(options.tolerance, -exponent_);
     box_units_ = {std::ldexp(1.0, a.scale_exponent - exponent_),
                   std::ldexp(1.0, b.scale_exponent - exponent_)};
-    queue_.push_back({0.0, a.root(), b.root(), {}});
-    descend(queue_.front());
+    const int half = -exponent_ / 2;
+    unit_factors_ = {std::ldexp(1.0, half), std::ldexp(1.0, -exponent_ - half)};
+    for (std::size_t k = 0; k < 3; ++k) {
+        lanes_->matrix[k] = halves(a_.matrix().rows[k], b_.matrix().rows[k]);
+    }
+    lanes_->shift = halves(a_.offset(), b_.offset());
+    lanes_->node_scale = halves(box_units_[0], box_units_[1]);
+    stack_.push_back({0.0, a.root(), b.root(), {}});
+    // Straight down to one pair of triangles, the nearest children each time: the distance that is
+    // found there keeps most of the rest from the queue. A damaged tree may hold what has none.
+    while (is_diving() && !(stack_.empty() && queue_.is_empty())) {
+        visit(pop());
+    }
+}
+
+DistanceQuery::Pair DistanceQuery::pop() {
+    if (stack_.empty()) {
+        return queue_.pop();
+    }
+    const Pair pair = stack_.back();
+    stack_.pop_back();
+    return pair;
 }
 
 bool DistanceQuery::advance(std::uint64_t max_pops) {
     for (;; --max_pops) {
         while (!stack_.empty() && is_settled(stack_.back().key)) {
-            low_ = std::min(low_, stack_.back().key);
+            settle(stack_.back().key);
             stack_.pop_back();
         }
-        if (stack_.empty() && (queue_.empty() || is_settled(queue_.front().key))) {
+        if (stack_.empty() && (queue_.is_empty() || is_settled(queue_.next_time()))) {
             return true;
         }
         if (max_pops == 0) {
             return false;
         }
-        if (stack_.empty()) {
-            std::pop_heap(queue_.begin(), queue_.end(), IsLater{});
-            stack_.push_back(queue_.back());
-            queue_.pop_back();
-        }
-        const Pair pair = stack_.back();
-        stack_.pop_back();
         ++counts_.pops;
-        visit(pair);
+        visit(pop());
     }
-}
-
-// Straight down to one pair of triangles, the nearer child each time: its distance keeps most of
-// the rest from the queue.
-void DistanceQuery::descend(Pair pair) {
-    const auto middle = [](const Side& side) {
-        const Triangle& t = side.triangle;
-        return side.ref.is_triangle() ? (1.0 / 3.0) * (t[0] + t[1] + t[2]) : side.box.center;
-    };
-    const auto nearer = [&](const PosedTree& body, const NodeRef& ref, const Side& other) {
-        const Node& node = body.tree().node(ref);
-        if (TreeView::is_leaf(node)) {
-            body.tree().prepare(ref);
-            return TreeView::triangle_ref(ref, ref.begin);
-        }
-        const auto refs = body.tree().children(ref, node);
-        const Side one = reach(body, refs[0]), two = reach(body, refs[1]);
-        const double to_one = bound(one, other), to_two = bound(two, other);
-        const Vec3 m = middle(other);
-        const bool is_one =
-            to_one != to_two ? to_one < to_two : norm(middle(one) - m) < norm(middle(two) - m);
-        return refs[is_one ? 0 : 1];
-    };
-    for (;;) {
-        const Next how = next(pair);
-        if (how == Next::kOpenA) {
-            pair.a = nearer(a_, pair.a, reach(b_, pair.b));
-        } else if (how == Next::kOpenB) {
-            pair.b = nearer(b_, pair.b, reach(a_, pair.a));
-        } else {
-            break;
-        }
-    }
-    a_.tree().prepare_triangles(pair.a, 1);
-    b_.tree().prepare_triangles(pair.b, 1);
-    take(measure(a_.triangle(pair.a), b_.triangle(pair.b)), pair.a, pair.b);
 }
 
 DistanceQuery::Next DistanceQuery::next(const Pair& pair) const {
@@ -128,14 +87,18 @@ DistanceQuery::Next DistanceQuery::next(const Pair& pair) const {
     const Node* node_b = is_box_b ? &b_.tree().node(pair.b) : nullptr;
     const bool opens_a = is_box_a && is_open(*node_a, pair.a, options_.max_depth_a);
     const bool opens_b = is_box_b && is_open(*node_b, pair.b, options_.max_depth_b);
-    if (opens_a == is_box_a && opens_b == is_box_b &&
-        pair.a.triangle_count() * std::uint64_t{pair.b.triangle_count()} <= kBatch) {
+    if (opens_a == is_box_a && opens_b == is_box_b && pair.a.triangle_count() <= kFew &&
+        pair.b.triangle_count() <= kFew) {
         return Next::kMeasure;
     }
     if (opens_a && opens_b) {
         const double size_a = box_units_[0] * norm_inf(half_extents_of(*node_a));
         const double size_b = box_units_[1] * norm_inf(half_extents_of(*node_b));
-        return size_a >= size_b ? Next::kOpenA : Next::kOpenB;
+        if (pair.b.triangle_count() <= kFew || size_b < kMuchSmaller * size_a) {
+            return Next::kOpenA;
+        }
+        return pair.a.triangle_count() <= kFew || size_a < kMuchSmaller * size_b ? Next::kOpenB
+                                                                                 : Next::kOpenBoth;
     }
     return opens_a ? Next::kOpenA : opens_b ? Next::kOpenB : Next::kClose;
 }
@@ -160,56 +123,94 @@ void DistanceQuery::visit(const Pair& pair) {
         refine(pair);
         return;
     }
-    switch (next(pair)) {
-    case Next::kOpenA:
-        return open<true>(pair);
-    case Next::kOpenB:
-        return open<false>(pair);
-    case Next::kMeasure:
-        return measure_all(pair);
-    case Next::kClose:
-        return close(pair);
+    const Next how = next(pair);
+    if (how == Next::kMeasure) {
+        measure_all(pair);
+    } else if (how == Next::kClose) {
+        close(pair);
+    } else {
+        open(pair, how != Next::kOpenB, how != Next::kOpenA);
     }
 }
 
-template <bool kOpensA>
-void DistanceQuery::open(const Pair& pair) {
-    const PosedTree& body = kOpensA ? a_ : b_;
-    const NodeRef& ref = kOpensA ? pair.a : pair.b;
-    const Side other = reach(kOpensA ? b_ : a_, kOpensA ? pair.b : pair.a);
-    const Node& node = body.tree().node(ref);
-    const auto add_child = [&](const NodeRef& child, double key) {
-        key = std::max(pair.key, key);
-        add(kOpensA ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
-    };
-    if (TreeView::is_leaf(node)) {
-        body.tree().prepare(ref);
-        for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
-            const NodeRef child = TreeView::triangle_ref(ref, i);
-            add_child(child, bound(reach(body, child), other));
+DistanceQuery::Part DistanceQuery::part_of(const PosedTree& body, const NodeRef& ref,
+                                           bool opens) const {
+    if (!opens) {
+        return {{ref, ref}, 1};
+    }
+    return {body.tree().children(ref, body.tree().node(ref)), 2};
+}
+
+void DistanceQuery::open(const Pair& pair, bool opens_a, bool opens_b) {
+    for (const bool is_a : {true, false}) {
+        if ((is_a ? opens_a : opens_b) &&
+            TreeView::is_leaf((is_a ? a_ : b_).tree().node(is_a ? pair.a : pair.b))) {
+            return open_leaf(pair, is_a);
         }
-        return;
     }
-    const auto refs = body.tree().children(ref, node);
-    const auto keys = bounds_of_children<kOpensA>(refs, other);
-    const std::size_t last = keys[0] < keys[1] ? 0 : 1; // of a stack, the next
-    add_child(refs[1 - last], keys[1 - last]);
-    add_child(refs[last], keys[last]);
+    const Part a = part_of(a_, pair.a, opens_a), b = part_of(b_, pair.b, opens_b);
+    const auto has_triangle = [](const Part& part) {
+        return part.refs[0].is_triangle() || part.refs[1].is_triangle();
+    };
+    if (has_triangle(a) || has_triangle(b)) {
+        add_one_by_one(pair, a, b);
+    } else {
+        add_by_lanes(pair, a, b);
+    }
 }
 
-// Two boxes against one are bounded at once.
-template <bool kOpensA>
-std::array<double, 2> DistanceQuery::bounds_of_children(const std::array<NodeRef, 2>& children,
-                                                        const Side& other) {
-    const PosedTree& body = kOpensA ? a_ : b_;
-    if (children[0].is_triangle() || children[1].is_triangle() || other.ref.is_triangle()) {
-        return {bound(reach(body, children[0]), other), bound(reach(body, children[1]), other)};
+void DistanceQuery::open_leaf(const Pair& pair, bool opens_a) {
+    const PosedTree& body = opens_a ? a_ : b_;
+    const NodeRef& ref = opens_a ? pair.a : pair.b;
+    body.tree().prepare(ref);
+    const Side other = reach(opens_a ? b_ : a_, opens_a ? pair.b : pair.a);
+    for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
+        const NodeRef child = TreeView::triangle_ref(ref, i);
+        const double key = std::max(pair.key, bound(reach(body, child), other));
+        add(opens_a ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
     }
-    counts_.box_tests += 2;
-    const TreeView& tree = body.tree();
-    const BasicObb<Pack> boxes = body.boxes(tree.node(children[0]), tree.node(children[1]));
-    const Pack squares = distance_square(boxes, broadcast(other.box), bound_);
-    return {shrink_ * std::sqrt(squares[0]), shrink_ * std::sqrt(squares[1])};
+}
+
+void DistanceQuery::add_one_by_one(const Pair& pair, const Part& a, const Part& b) {
+    for (std::uint32_t i = 0; i < a.count; ++i) {
+        const Side side_a = reach(a_, a.refs[i]);
+        for (std::uint32_t j = 0; j < b.count; ++j) {
+            const double key = bound(side_a, reach(b_, b.refs[j]));
+            add({std::max(pair.key, key), a.refs[i], b.refs[j], {}});
+        }
+    }
+}
+
+// The nearest of them is next where a dive or a stack goes on with it.
+void DistanceQuery::add_by_lanes(const Pair& pair, const Part& a, const Part& b) {
+    BasicObb<Four> boxes;
+    place_boxes(*lanes_,
+                {&a_.tree().node(a.refs[0]), &a_.tree().node(a.refs[1]), &b_.tree().node(b.refs[0]),
+                 &b_.tree().node(b.refs[1])},
+                boxes);
+    const BoxGaps gaps = box_gaps(boxes, bound_);
+    const std::uint32_t count = a.count * b.count;
+    std::array<Pair, 4> pairs;
+    std::uint32_t nearest = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double key = std::max(pair.key, shrink_ * std::sqrt(gaps.squares[k]));
+        pairs[k] = {key, a.refs[k % 2], b.refs[kSecond[k]], {}};
+        if (key < pairs[nearest].key ||
+            (key == pairs[nearest].key && gaps.center_squares[k] < gaps.center_squares[nearest])) {
+            nearest = k;
+        }
+    }
+    counts_.box_tests += count;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        if (k != nearest) {
+            add(pairs[k]);
+        }
+    }
+    if (is_diving() || pairs[nearest].key == 0) {
+        stack_.push_back(pairs[nearest]);
+    } else {
+        add(pairs[nearest]);
+    }
 }
 
 // Of two triangles nothing yet: they are measured when their turn comes.
@@ -224,129 +225,23 @@ double DistanceQuery::bound(const Side& a, const Side& b) {
     return shrink_ * std::sqrt(square);
 }
 
-double DistanceQuery::low_in_unit(double length, int exponent) const {
-    return exponent == 0 && unit_ > 0 ? unit_ * length : scaled_down(length, exponent - exponent_);
-}
-
-double DistanceQuery::high_in_unit(double length, int exponent) const {
-    return exponent == 0 && unit_ > 0 ? unit_ * length : scaled_up(length, exponent - exponent_);
-}
-
 bool DistanceQuery::is_settled(double key) const {
     double slack = kSettled * high_;
     if (counts_.exact_triangle_tests > kManyTies) {
         slack = std::max(slack, std::min(kSettledOfMany, 0x1p-20 * high_));
     }
-    return high_ - key <= std::max(tolerance_, slack);
+    return !is_diving() && high_ - key <= std::max(tolerance_, slack);
 }
 
 void DistanceQuery::add(const Pair& pair) {
     if (is_settled(pair.key)) {
-        low_ = std::min(low_, pair.key);
+        settle(pair.key);
     } else if (counts_.pops > kPatience && pair.features.kind == NearFeatures::Kind::kNone &&
                pair.a.triangle_count() + pair.b.triangle_count() <= kSmall) {
         stack_.push_back(pair);
     } else {
-        queue_.push_back(pair);
-        std::push_heap(queue_.begin(), queue_.end(), IsLater{});
+        queue_.push(pair, pair.key, pair.a.depth + pair.b.depth);
     }
-}
-
-void DistanceQuery::measure_all(const Pair& pair) {
-    a_.tree().prepare_triangles(pair.a, pair.a.triangle_count());
-    b_.tree().prepare_triangles(pair.b, pair.b.triangle_count());
-    std::array<Triangle, kBatch> of_b;
-    for (std::uint32_t j = pair.b.begin; j < pair.b.end; ++j) {
-        of_b[j - pair.b.begin] = b_.triangle(TreeView::triangle_ref(pair.b, j));
-    }
-    for (std::uint32_t i = pair.a.begin; i < pair.a.end; ++i) {
-        const NodeRef ref_a = TreeView::triangle_ref(pair.a, i);
-        const Triangle a = a_.triangle(ref_a);
-        for (std::uint32_t j = pair.b.begin; j < pair.b.end; ++j) {
-            const Triangle& b = of_b[j - pair.b.begin];
-            const DistanceBound least = distance_bound(a, b);
-            const double key = std::max(pair.key, low_in_unit(least.low, least.exponent));
-            ++counts_.triangle_tests;
-            if (is_settled(key)) {
-                low_ = std::min(low_, key);
-            } else {
-                measure_one({key, ref_a, TreeView::triangle_ref(pair.b, j), {}}, a, b);
-            }
-        }
-    }
-}
-
-void DistanceQuery::measure_one(const Pair& pair, const Triangle& a, const Triangle& b) {
-    const TriangleDistance found = measure(a, b);
-    Pair measured = pair;
-    measured.key = std::max(pair.key, low_in_unit(found.low, found.exponent));
-    if (measured.key == 0) {
-        const TriangleVerdict verdict = test_triangles(a, b);
-        counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
-        if (verdict.intersects) {
-            touch(pair.a, pair.b);
-            return;
-        }
-    }
-    measured.features = found.features;
-    take(found, pair.a, pair.b);
-    add(measured);
-}
-
-void DistanceQuery::refine(const Pair& pair) {
-    ++counts_.exact_triangle_tests;
-    const TriangleDistance found =
-        measure_finely(a_.triangle(pair.a), b_.triangle(pair.b), pair.features);
-    take(found, pair.a, pair.b);
-    low_ = std::min(low_, std::max(pair.key, low_in_unit(found.low, found.exponent)));
-}
-
-// Boxes that stand for what they hold: any of their triangles will do for an upper bound.
-void DistanceQuery::close(const Pair& pair) {
-    low_ = std::min(low_, pair.key);
-    a_.tree().prepare_triangles(pair.a, 1);
-    b_.tree().prepare_triangles(pair.b, 1);
-    const Triangle a = a_.triangle(pair.a), b = b_.triangle(pair.b);
-    ++counts_.triangle_tests;
-    if (triangles_intersect(a, b)) {
-        touch(pair.a, pair.b);
-    } else {
-        take(measure(a, b), pair.a, pair.b);
-    }
-}
-
-void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b) {
-    const double high = high_in_unit(found.high, found.exponent);
-    const DistanceBounds one{0, 0, found.point_a, found.point_b, a_.id(a), b_.id(b)};
-    if (high < high_ || (high == high_ && ids(one) < ids(best_))) {
-        high_ = high;
-        best_ = one;
-    }
-}
-
-void DistanceQuery::touch(const NodeRef& a, const NodeRef& b) {
-    const Vec3 point = common_point(a_.triangle(a), b_.triangle(b));
-    low_ = high_ = 0;
-    best_ = {0, 0, point, point, a_.id(a), b_.id(b)};
-    queue_.clear();
-    stack_.clear();
-}
-
-DistanceBounds DistanceQuery::bounds() const {
-    double low = std::min(low_, high_);
-    if (!queue_.empty()) {
-        low = std::min(low, queue_.front().key);
-    }
-    for (const Pair& pair : stack_) {
-        low = std::min(low, pair.key);
-    }
-    DistanceBounds result = best_;
-    result.low = scaled_down(low, exponent_);
-    result.high = scaled_up(high_, exponent_);
-    if (!std::isfinite(result.high)) {
-        throw std::domain_error("the distance exceeds the range of double");
-    }
-    return result;
 }
 
 } // namespace obb

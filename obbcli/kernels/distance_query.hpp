@@ -3,13 +3,18 @@
 #pragma once
 
 #include "closest_points.hpp"
+#include "distance_lanes.hpp"
+#include "placed_boxes.hpp"
 #include "pose.hpp"
 #include "static_query.hpp"
+#include "time_queue.hpp"
 #include "tree.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace obb {
@@ -57,14 +62,13 @@ class DistanceQuery {
     [[nodiscard]] const DistanceQueryCounts& counts() const { return counts_; }
 
   private:
+    // Of nodes with at most so many triangles all pairs are looked at, rather than smaller boxes.
+    static constexpr std::uint32_t kFew = 3;
     // Lengths within the query are in its unit: mesh units times 2^-exponent_.
     struct Pair {
         double key; // proven: nothing in `a` is nearer to anything in `b`
         NodeRef a, b;
         NearFeatures features; // where two triangles were measured: only more digits tell more
-    };
-    struct IsLater {
-        bool operator()(const Pair& p, const Pair& q) const { return p.key > q.key; }
     };
     // A node as the tests see it: its box, or the triangle that needs none.
     struct Side {
@@ -73,30 +77,43 @@ class DistanceQuery {
         Triangle triangle; // in the frame of the boxes
     };
 
-    void descend(Pair pair);
+    // Some of what is under a node: its children, or itself where it stays.
+    struct Part {
+        std::array<NodeRef, 2> refs;
+        std::uint32_t count;
+    };
+    struct Candidate {
+        double low;
+        std::uint32_t a, b; // positions in their batches
+    };
+
+    [[nodiscard]] bool is_diving() const { return high_ > std::numeric_limits<double>::max(); }
+    [[nodiscard]] Pair pop();
     void visit(const Pair& pair);
-    template <bool kOpensA>
-    void open(const Pair& pair);
+    void open(const Pair& pair, bool opens_a, bool opens_b);
+    void open_leaf(const Pair& pair, bool opens_a);
+    [[nodiscard]] Part part_of(const PosedTree& body, const NodeRef& ref, bool opens) const;
+    void add_by_lanes(const Pair& pair, const Part& a, const Part& b);
+    void add_one_by_one(const Pair& pair, const Part& a, const Part& b);
     void measure_all(const Pair& pair);
     void measure_one(const Pair& pair, const Triangle& a, const Triangle& b);
     void refine(const Pair& pair);
     void close(const Pair& pair);
 
-    // How a pair goes on: with A's children or B's, with their triangles, or not at all.
-    enum class Next : std::uint8_t { kOpenA, kOpenB, kMeasure, kClose };
+    // How a pair goes on: with the children of one or both, with their triangles, or not at all.
+    enum class Next : std::uint8_t { kOpenA, kOpenB, kOpenBoth, kMeasure, kClose };
     [[nodiscard]] Next next(const Pair& pair) const;
     [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
     [[nodiscard]] Side reach(const PosedTree& body, const NodeRef& ref) const;
     [[nodiscard]] double bound(const Side& a, const Side& b);
-    template <bool kOpensA>
-    [[nodiscard]] std::array<double, 2> bounds_of_children(const std::array<NodeRef, 2>& children,
-                                                           const Side& other);
     [[nodiscard]] double high_in_unit(double length, int exponent) const;
     [[nodiscard]] double low_in_unit(double length, int exponent) const;
 
     // Whether a lower bound is as good as the least distance found.
     [[nodiscard]] bool is_settled(double key) const;
+    void settle(double key) { low_ = std::min(low_, key); }
     void add(const Pair& pair);
+    [[nodiscard]] Triangle in_unit(const Triangle& t) const;
     void take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
     void touch(const NodeRef& a, const NodeRef& b);
 
@@ -106,9 +123,12 @@ class DistanceQuery {
     double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
     int exponent_ = 0;
     double unit_ = 0; // 2^-exponent_; 0 where products with it may underflow
+    std::array<double, 2> unit_factors_{1, 1}; // of which the product is 2^-exponent_
+    // On the heap: vectors this wide want more alignment than those who hold queries give.
+    std::unique_ptr<LaneFrame> lanes_ = std::make_unique<LaneFrame>();
     double tolerance_ = 0;
     std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
-    std::vector<Pair> queue_;               // a heap, the least key in front
+    TimeQueue<Pair> queue_;                 // by their keys
     std::vector<Pair> stack_;               // small pairs, done before the queue goes on
     double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points

@@ -17,18 +17,4 @@ struct BasicObb {
 
 using Obb = BasicObb<double>;
 
-[[nodiscard]] inline BasicObb<Pack> broadcast(const Obb& box) {
-    const auto twice = [](Vec3 v) { return packed(v, v); };
-    return {twice(box.center),
-            {twice(box.axes[0]), twice(box.axes[1]), twice(box.axes[2])},
-            twice(box.half_extents)};
-}
-
-[[nodiscard]] inline Obb lane(const BasicObb<Pack>& boxes, std::size_t k) {
-    const auto one = [k](const Vector3<Pack>& v) { return Vec3{v.x[k], v.y[k], v.z[k]}; };
-    return {one(boxes.center),
-            {one(boxes.axes[0]), one(boxes.axes[1]), one(boxes.axes[2])},
-            one(boxes.half_extents)};
-}
-
 } // namespace obb

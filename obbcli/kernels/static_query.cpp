@@ -53,15 +53,6 @@ Obb PosedTree::box(const Node& node) const {
     return in_frame(Obb{node.center, axes_of(node.rotation), half_extents_of(node)});
 }
 
-BasicObb<Pack> PosedTree::boxes(const Node& first, const Node& second) const {
-    const auto& p = first.rotation;
-    const auto& q = second.rotation;
-    return in_frame(BasicObb<Pack>{
-        packed(first.center, second.center),
-        axes_of_quaternion(Pack{p[0], q[0]}, Pack{p[1], q[1]}, Pack{p[2], q[2]}, Pack{p[3], q[3]}),
-        packed(half_extents_of(first), half_extents_of(second))});
-}
-
 Triangle PosedTree::triangle_in_frame(const NodeRef& ref) const {
     Triangle t = tree_->triangle(ref.begin);
     for (Vec3& v : t) {

@@ -53,7 +53,6 @@ class PosedTree {
     // The nodes' unit in the frame's.
     [[nodiscard]] double node_scale() const { return scale_; }
     [[nodiscard]] Obb box(const Node& node) const;
-    [[nodiscard]] BasicObb<Pack> boxes(const Node& first, const Node& second) const;
     [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
     [[nodiscard]] std::uint32_t id(const NodeRef& ref) const;
