@@ -53,6 +53,25 @@ template <typename Real>
     return found;
 }
 
+// Of the pair's extent: how far apart points are that differ by their rounding alone.
+constexpr double kPointRounding = 4 * kUnitRoundoff;
+
+struct MeetingPoint {
+    Vec3 point;   // of A
+    double error; // how far it is from B, of the extent
+};
+
+template <typename Real>
+[[nodiscard]] MeetingPoint meeting_point(const Triangle& a, const Triangle& b) {
+    const LocalPair<Real> pair = localized<Real>(a, b);
+    NearestPoints<Real> solver(pair);
+    solver.try_all();
+    solver.try_crossings();
+    const Nearest<Real>& nearest = solver.nearest();
+    const double apart = rounded(root_of(nearest.square));
+    return {pair.placed(nearest.p), pair.extent > 0 ? apart / pair.extent : 0.0};
+}
+
 } // namespace
 
 bool precedes(const Triangle& a, const Triangle& b) {
@@ -79,11 +98,10 @@ Vec3 common_point(const Triangle& a, const Triangle& b) {
     if (precedes(b, a)) {
         return common_point(b, a);
     }
-    const LocalPair<Twofold> pair = localized<Twofold>(a, b);
-    NearestPoints<Twofold> solver(pair);
-    solver.try_all();
-    solver.try_crossings();
-    return pair.placed(solver.nearest().p);
+    if (const auto [point, error] = meeting_point<double>(a, b); error <= kPointRounding) {
+        return point;
+    }
+    return meeting_point<Twofold>(a, b).point;
 }
 
 } // namespace obb
