@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.motion import as_body
-from obbcli.question import POPS_A_SLICE, box_limits, damaged, out_of_range, trees_of
-from obbcli.results import Distance, QueryStats
+from obbcli.question import POPS_A_SLICE, box_limits, damaged, out_of_range, stats_of, trees_of
+from obbcli.results import Distance
 
 if TYPE_CHECKING:
     from obbcli.motion import Body, Shape
@@ -63,12 +63,11 @@ def measure(
     try:
         query = _query(trees, bodies, accuracy)
         is_complete = _run(query, accuracy)
-        low, high, point_a, point_b, triangle_a, triangle_b = query.bounds()
+        low, high, point_a, point_b, triangle_a, triangle_b, counts = query.answer()
     except ValueError as fault:
         raise out_of_range(trees, "pose", fault) from fault
     except kernels.TreeError as fault:
         raise damaged(trees, fault) from fault
-    tree_a, tree_b = trees
     answer = Distance(
         distance=high,
         bounds=(low, high),
@@ -76,13 +75,8 @@ def measure(
         point_b=point_b,
         triangle_a=triangle_a,
         triangle_b=triangle_b,
-        stats=QueryStats(
-            *query.counts(),
-            tree_a.node_count,
-            tree_b.node_count,
-            tree_a.possible_node_count,
-            tree_b.possible_node_count,
-            {"load": loaded - start, "query": time.perf_counter() - loaded},
+        stats=stats_of(
+            trees, counts, {"load": loaded - start, "query": time.perf_counter() - loaded}
         ),
     )
     return answer, is_complete

@@ -25,16 +25,19 @@ void bind_distance(nb::module_& m) {
             "max_depth_b"_a, "tolerance"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
         .def("advance", &obb::DistanceQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
-        // low, high, point_a, point_b, triangle_a, triangle_b
-        .def("bounds",
-             [](const obb::DistanceQuery& q) {
-                 const obb::DistanceBounds b = q.bounds();
-                 const auto point = [](const obb::Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
-                 return std::tuple{b.low,        b.high,      point(b.point_a), point(b.point_b),
-                                   b.triangle_a, b.triangle_b};
-             })
-        .def("counts", [](const obb::DistanceQuery& q) {
+        // low, high, point_a, point_b, triangle_a, triangle_b, counts: box tests, triangle tests,
+        // exact ones, pops
+        .def("answer", [](const obb::DistanceQuery& q) {
+            const obb::DistanceBounds b = q.bounds();
             const obb::DistanceQueryCounts& c = q.counts();
-            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
+            const auto point = [](const obb::Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
+            return std::tuple{
+                b.low,
+                b.high,
+                point(b.point_a),
+                point(b.point_b),
+                b.triangle_a,
+                b.triangle_b,
+                std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops}};
         });
 }
