@@ -41,6 +41,7 @@ class OpenedTree:
         with Path(path).open("rb") as file:
             header = read_header(file, self._name)
             self.description = header.description
+            self.surface = header.surface
             self.node_count = header.node_count
             self.triangle_count = header.triangle_count
             self.vertex_count = header.vertex_count
@@ -73,6 +74,7 @@ class OpenedTree:
             vertices=vertices,
             scale_exponent=self._scale_exponent,
             description=self.description,
+            surface=self.surface,
         )
 
     def triangle(self, row: int) -> NDArray[np.float64]:

@@ -112,7 +112,8 @@ class ObbTree(TreeFacts):
             TreeFileError: the tree was opened from a file that is damaged.
             OSError: the place cannot be written to.
         """
-        return treefile.write_tree(path, self._arrays)
+        surface = self._surface or treeheader.Surface.of(self.mesh)
+        return treefile.write_tree(path, self._arrays, surface)
 
     def check(self) -> None:
         """Prove the tree: checksums, structure, and every triangle inside all boxes above it.
@@ -132,6 +133,8 @@ class ObbTree(TreeFacts):
         fault = self._kernel_of(self._arrays).check(
             min(self.leaf_size, _NO_LIMIT), _NO_LIMIT if depth is None else min(depth, _NO_LIMIT)
         )
+        if fault is None and self._surface not in (None, treeheader.Surface.of(self.mesh)):
+            fault = "the surface has other bounds or another centroid than the header says"
         if fault is not None:
             raise TreeFileError(self.place, fault, "build it again from the mesh")
 

@@ -15,6 +15,7 @@ from obbcli import kernels, treefile
 from obbcli.errors import MeshError, TreeFileError
 from obbcli.growth import Growth
 from obbcli.mesh import Mesh
+from obbcli.mesh.measure import diagonal
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.opened import OpenedTree
+    from obbcli.treeheader import Surface
 
 
 class Level(NamedTuple):
@@ -120,19 +122,31 @@ class TreeFacts:
             raise TreeFileError(self.place, str(fault), "build it again from the mesh") from fault
 
     @property
+    def _surface(self) -> Surface | None:
+        """What the tree's file says of the mesh as a whole; None where the mesh is at hand."""
+        return None if isinstance(self._made, Growth) else self._made.surface
+
+    @property
+    def _known_surface(self) -> Surface | None:
+        """The same where it spares reading the file; what was read speaks for itself."""
+        return None if isinstance(self._made, treefile.TreeArrays) else self._surface
+
+    @cached_property
     def bounds(self) -> NDArray[np.float64]:
         """Lower and upper corner of the mesh's axis-aligned box, (2, 3), mesh units; as `mesh`."""
-        return self.mesh.bounds
+        known = self._known_surface
+        return self.mesh.bounds if known is None else _read_only(known.bounds)
 
     @property
     def size(self) -> float:
         """Diagonal of `bounds`, mesh units; as `mesh`."""
-        return self.mesh.size
+        return diagonal(self.bounds)
 
-    @property
+    @cached_property
     def surface_centroid(self) -> NDArray[np.float64]:
         """Area-weighted centroid of the surface, (3,): the default pivot; as `mesh`."""
-        return self.mesh.surface_centroid
+        known = self._known_surface
+        return self.mesh.surface_centroid if known is None else _read_only(known.surface_centroid)
 
     @property
     def triangle_count(self) -> int:
@@ -221,6 +235,12 @@ class TreeFacts:
         if not isinstance(a, treefile.TreeArrays):
             return a.nbytes
         return a.nodes.nbytes + a.corners.nbytes + a.triangle_ids.nbytes + a.vertices.nbytes
+
+
+def _read_only(values: tuple[object, ...]) -> NDArray[np.float64]:
+    array = np.array(values, np.float64)
+    array.setflags(write=False)
+    return array
 
 
 def _ldexp_or_none(value: float, exponent: int) -> float | None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from obbcli.treeheader import Description, Header
+    from obbcli.treeheader import Description, Header, Surface
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,6 +42,7 @@ class TreeArrays:
         vertices: float64 (V, 3), mesh units.
         scale_exponent: boxes are in mesh units times 2 to the minus this.
         description: how the tree was made.
+        surface: of the mesh as a whole, as a file says it; None where it is for the mesh to say.
     """
 
     nodes: NDArray[np.uint8]
@@ -50,10 +51,16 @@ class TreeArrays:
     vertices: NDArray[np.float64]
     scale_exponent: int
     description: Description
+    surface: Surface | None = None
 
 
-def write_tree(path: str | os.PathLike[str], arrays: TreeArrays) -> int:
+def write_tree(path: str | os.PathLike[str], arrays: TreeArrays, surface: Surface) -> int:
     """Write a tree file whole or not at all, and return its size in bytes.
+
+    Args:
+        path: where to.
+        arrays: the tree.
+        surface: of its mesh.
 
     Raises:
         OSError: the place cannot be written to; nothing is left behind.
@@ -63,6 +70,7 @@ def write_tree(path: str | os.PathLike[str], arrays: TreeArrays) -> int:
         (len(arrays.nodes), len(arrays.corners), len(arrays.vertices)),
         arrays.scale_exponent,
         arrays.description,
+        surface,
         kernels.block_checksums(np.frombuffer(data, np.uint8)),
         len(data),
     )
@@ -105,6 +113,7 @@ def parse_tree(
         vertices=vertices.view("<f8").reshape(-1, 3),
         scale_exponent=header.scale_exponent,
         description=header.description,
+        surface=header.surface,
     )
 
 

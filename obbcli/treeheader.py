@@ -12,7 +12,8 @@ import os
 import struct
 import zlib
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, BinaryIO, Literal, get_args
+from math import inf
+from typing import TYPE_CHECKING, BinaryIO, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from obbcli.errors import TreeFileError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from obbcli.mesh import Mesh
 
 # As in PNG: the first byte is no text, and line ends show a transfer in text mode.
 MAGIC = b"\x89OBBT\r\n\x1a"
@@ -61,6 +64,24 @@ class Description:
     tool_version: str
 
 
+class Surface(NamedTuple):
+    """What questions ask of a mesh as a whole, so that they need not read all of it.
+
+    Attributes:
+        bounds: the corners of its axis-aligned box, mesh units.
+        surface_centroid: its area-weighted centroid, mesh units.
+    """
+
+    bounds: tuple[tuple[float, ...], tuple[float, ...]]
+    surface_centroid: tuple[float, ...]
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> Surface:
+        """Return that of a mesh."""
+        low, high = mesh.bounds.tolist()
+        return cls((tuple(low), tuple(high)), tuple(mesh.surface_centroid.tolist()))
+
+
 def is_tree_file(head: bytes) -> bool:
     """Return whether a file that begins with `head` claims to be a tree file."""
     return head[: len(MAGIC)] == MAGIC
@@ -92,6 +113,7 @@ class Header:
         vertex_count: vertices.
         scale_exponent: boxes are in mesh units times 2 to the minus this.
         description: how the tree was made.
+        surface: of the mesh as a whole.
         checksums: uint32 (B,), the CRC-32 of each block.
     """
 
@@ -101,6 +123,7 @@ class Header:
     vertex_count: int
     scale_exponent: int
     description: Description
+    surface: Surface
     checksums: NDArray[np.uint32]
 
     @property
@@ -146,19 +169,21 @@ def checked_header(data: memoryview, size: int, name: str) -> Header:
     ):
         raise TreeFileError(name, "has counts that contradict each other", "build it again")
     text = bytes(data[FIXED.size : FIXED.size + text_bytes])
+    description, surface = _description(text, name)
     return Header(
         header_bytes=header_bytes,
         node_count=nodes,
         triangle_count=triangles,
         vertex_count=vertices,
         scale_exponent=exponent,
-        description=_description(text, name),
+        description=description,
+        surface=surface,
         checksums=np.frombuffer(data, "<u4", blocks, FIXED.size + text_bytes),
     )
 
 
-def _description(text: bytes, name: str) -> Description:
-    """Return the description, whose every field must be there, of its type and of use."""
+def _description(text: bytes, name: str) -> tuple[Description, Surface]:
+    """Return what the JSON says, whose every field must be there, of its type and of use."""
     import json
 
     optional_text, optional_number = (str, type(None)), (int, type(None))
@@ -170,6 +195,8 @@ def _description(text: bytes, name: str) -> Description:
         "source": optional_text,
         "source_sha256": optional_text,
         "tool_version": str,
+        "bounds": list,
+        "surface_centroid": list,
     }
     try:
         fields = json.loads(text)
@@ -181,6 +208,9 @@ def _description(text: bytes, name: str) -> Description:
         raise TreeFileError(name, "has a description that is no JSON object") from fault
     if not sound:
         raise TreeFileError(name, "lacks something in its description", "build it again")
+    bounds, centroid = fields.pop("bounds"), fields.pop("surface_centroid")
+    if not _is_surface(bounds, centroid):
+        raise TreeFileError(name, "says of its surface what no mesh has", "build it again")
     description = Description(**fields)
     allowed = {
         "fit": description.fit in get_args(Fit),
@@ -193,13 +223,26 @@ def _description(text: bytes, name: str) -> Description:
             raise TreeFileError(
                 name, f"says that {field} is {fields[field]!r}, which no tree has", "build it again"
             )
-    return description
+    return description, Surface((tuple(bounds[0]), tuple(bounds[1])), tuple(centroid))
+
+
+def _is_surface(bounds: list[object], centroid: list[object]) -> bool:
+    """Return whether these are the corners of a box and a point in it."""
+    if len(bounds) != 2:
+        return False
+    points = [bounds[0], centroid, bounds[1]]
+    for point in points:
+        if not isinstance(point, list) or list(map(type, point)) != [float] * 3:
+            return False
+    # Neither infinite numbers nor such as are none pass the comparisons.
+    return all(-inf < low <= x <= high < inf for low, x, high in zip(*points, strict=True))
 
 
 def pack_header(
     counts: tuple[int, int, int],
     scale_exponent: int,
     description: Description,
+    surface: Surface,
     checksums: NDArray[np.uint32],
     data_bytes: int,
 ) -> bytes:
@@ -209,13 +252,14 @@ def pack_header(
         counts: of boxes, triangles and vertices.
         scale_exponent: as in `Header`.
         description: how the tree was made.
+        surface: of the mesh as a whole.
         checksums: of each block of data.
         data_bytes: length of all data.
     """
     # Not at hand before: questions about meshes start without it.
     import json
 
-    text = json.dumps(asdict(description)).encode()
+    text = json.dumps(asdict(description) | surface._asdict()).encode()
     table = checksums.astype("<u4", copy=False).tobytes()
     header_bytes = round_up(FIXED.size + len(text) + len(table))
     fixed = FIXED.pack(

@@ -170,6 +170,21 @@ def test_vertex_that_is_no_number_is_the_trees_fault_and_not_the_motions(
             obbcli.first_contact(Body(pair[0], motion=fast), Body(pair[1], motion=Motion(X, Z)))
 
 
+@pytest.mark.parametrize("triangle_count", [1, 12])
+def test_vertex_of_an_opened_file_that_is_no_number_is_not_read_as_one(
+    triangle_count: int, tmp_path: Path
+) -> None:
+    data = bytearray(file_of(soup(triangle_count), tmp_path))
+    start = data.rindex(soup(triangle_count)[0].tobytes())
+    for place in range(start, start + 72 * triangle_count, 24):
+        struct.pack_into("<d", data, place, np.inf)
+    path = tmp_path / "damaged.obbt"
+    path.write_bytes(data)
+
+    with pytest.raises(TreeFileError, match="a vertex is not made of usable numbers"):
+        obbcli.collide(ObbTree.open(path, verify=False), Mesh(*soup(triangle_count)))
+
+
 def test_box_that_is_no_number_is_the_trees_fault_and_not_the_motions(tmp_path: Path) -> None:
     data = file_of(soup(12), tmp_path)
     damaged = _with_nan(data, FIXED.unpack_from(data)[2], "d")

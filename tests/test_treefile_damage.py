@@ -205,6 +205,43 @@ def test_treefile_rejects_a_description_that_no_build_has(
             ObbTree.open(path, verify=verify)
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"bounds": []},
+        {"bounds": [[0.0, 0.0, 0.0]]},
+        {"bounds": [[0.0, 0.0], [1.0, 1.0]]},
+        {"bounds": [0.0, 1.0]},
+        {"bounds": [[0, 0, 0], [1, 1, 1]]},
+        {"bounds": [["", "", ""], ["z", "z", "z"]]},
+        {"bounds": [[9.0, 9.0, 9.0], [-9.0, -9.0, -9.0]]},
+        {"bounds": [[-9.0, -9.0, -9.0], [9.0, 9.0, float("inf")]]},
+        {"bounds": [[-9.0, -9.0, float("-inf")], [9.0, 9.0, 9.0]]},
+        {"bounds": [[-9.0, -9.0, float("nan")], [9.0, 9.0, 9.0]]},
+        {"surface_centroid": [0.0]},
+        {"surface_centroid": [None, 0.0, 0.0]},
+        {"surface_centroid": [float("nan"), 0.0, 0.0]},
+        {"surface_centroid": [50.0, 0.0, 0.0]},
+    ],
+    ids=repr,
+)
+def test_treefile_rejects_a_surface_that_no_mesh_has(changes: dict[str, Any], small: bytes) -> None:
+    with pytest.raises(TreeFileError, match="says of its surface what no mesh has"):
+        ObbTree.from_bytes(with_description(small, **changes))
+
+
+@pytest.mark.parametrize("name", ["bounds", "surface_centroid"])
+def test_check_refuses_a_surface_that_is_another(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "forged.obbt"
+    data = file_of(([[0, 0, 0], [9, 0, 0], [0, 9, 0]], [[0, 1, 2]]), tmp_path)
+    value = {"bounds": [[0.0, 0.0, 0.0], [9.0, 9.0, 1.0]], "surface_centroid": [3.0, 4.0, 0.0]}
+    path.write_bytes(with_description(data, **{name: value[name]}))
+
+    for tree in (ObbTree.open(path), ObbTree.from_bytes(path.read_bytes())):
+        with pytest.raises(TreeFileError, match="the surface has other bounds"):
+            tree.check()
+
+
 def test_checksum_error_names_the_block(tmp_path: Path) -> None:
     data = bytearray(file_of(bumpy_grid(10), tmp_path))
     start = FIXED.unpack_from(data)[2]

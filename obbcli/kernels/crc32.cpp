@@ -81,7 +81,7 @@ OBB_FOLDS inline __m128i folded(__m128i value, __m128i past, __m128i next) {
 // Of a multiple of 64 bytes, at least 64.
 OBB_FOLDS std::uint32_t advance_by_folding(std::uint32_t rest, std::span<const std::byte> bytes) {
     const std::byte* at = bytes.data();
-    std::array<__m128i, 4> parts;
+    __m128i parts[4]; // a template would ignore how these are aligned
     for (std::size_t i = 0; i < 4; ++i) {
         parts[i] = load(at + 16 * i);
     }

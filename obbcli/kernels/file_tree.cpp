@@ -131,6 +131,9 @@ void FileTree::load_triangles(std::uint32_t begin, std::uint32_t end) {
             }
             const std::size_t vertex = layout_.vertices_begin() + corner * sizeof(Vec3);
             blocks_.load(vertex, vertex + sizeof(Vec3));
+            if (!is_finite(view_.vertices[corner])) {
+                throw TreeError("a vertex is not made of usable numbers");
+            }
         }
     }
 }

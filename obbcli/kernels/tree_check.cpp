@@ -15,8 +15,7 @@ std::string at(const char* fault, const NodeRef& ref) {
 }
 
 bool is_sound(const Node& node) {
-    bool sound = std::isfinite(node.center.x) && std::isfinite(node.center.y) &&
-                 std::isfinite(node.center.z) && node.reserved == 0;
+    bool sound = is_finite(node.center) && node.reserved == 0;
     for (const float extent : node.half_extents) {
         sound = sound && std::isfinite(extent) && extent >= 0;
     }
@@ -29,9 +28,7 @@ bool is_sound(const Node& node) {
 }
 
 bool is_finite(const Triangle& triangle) {
-    return std::ranges::all_of(triangle, [](const Vec3& v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    });
+    return std::ranges::all_of(triangle, [](Vec3 v) { return is_finite(v); });
 }
 
 // |A_i . (x - c)| with its rounding error and the axes' defect of a few ulps added.

@@ -38,6 +38,9 @@ template <typename Real>
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 [[nodiscard]] inline Vec3 abs(Vec3 a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
+[[nodiscard]] inline bool is_finite(Vec3 a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 [[nodiscard]] inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 
 // Sum and largest of the absolute components: the norms that rounding bounds are written in.

@@ -1,13 +1,21 @@
-// Questions from several threads to trees that grow as they are asked, for the thread sanitizer:
-// every answer must be that of one thread and whole trees.
+// Questions from several threads to trees that grow, or are read, as they are asked, for the thread
+// sanitizer: every answer must be that of one thread and whole trees.
+#include "crc32.hpp"
 #include "distance_query.hpp"
+#include "file_tree.hpp"
 #include "parallel.hpp"
 #include "static_query.hpp"
 #include "tree_build.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <span>
 #include <thread>
+#include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -60,8 +68,7 @@ Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
     if (index % 2 == 0) {
         all.advance(50);
         std::vector<obb::StaticQuery> parts = all.divide(6);
-        obb::do_parts(
-            parts.size(), 2, [&](std::size_t k) { return parts[k].advance(100); }, [] {});
+        obb::do_parts(parts.size(), 2, [&](std::size_t k) { return parts[k].advance(100); }, [] {});
         all.join(parts);
     }
     while (!all.advance(1000)) {
@@ -71,6 +78,60 @@ Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
     }
     const obb::DistanceBounds bounds = nearest.bounds();
     return {{all.pairs().begin(), all.pairs().end()}, bounds.low, bounds.high};
+}
+
+// Asks from several threads at once while another one makes the rest of tree a.
+template <typename Complete>
+int wrong_answers(const obb::TreeView& a, const obb::TreeView& b, const std::vector<Answer>& wanted,
+                  Complete complete) {
+    std::vector<Answer> answers(kThreads * kPoses);
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < kThreads; ++t) {
+        threads.emplace_back([&, t] {
+            for (std::size_t i = 0; i < kPoses; ++i) {
+                const std::size_t index = (i + 3 * t) % kPoses;
+                answers[t * kPoses + index] = ask(a, b, index);
+            }
+        });
+    }
+    threads.emplace_back(complete);
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    int found = 0;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        found += answers[i] == wanted[i % kPoses] ? 0 : 1;
+    }
+    return found;
+}
+
+// A whole tree, written to a file that has no name and opened.
+obb::FileTree opened(const obb::TreeBuilder& whole) {
+    const obb::TreeView view = whole.view();
+    const std::vector<obb::Node> nodes = whole.without_gaps();
+    const obb::TreeLayout layout{0, nodes.size(), view.corners.size(), view.vertices.size(),
+                                 view.scale_exponent};
+    std::vector<std::byte> data(layout.data_bytes());
+    std::memcpy(data.data(), nodes.data(), nodes.size() * sizeof(obb::Node));
+    std::memcpy(&data[layout.corners_begin()], view.corners.data(), view.corners.size_bytes());
+    std::memcpy(&data[layout.ids_begin()], view.triangle_ids.data(),
+                view.triangle_ids.size_bytes());
+    std::memcpy(&data[layout.vertices_begin()], view.vertices.data(), view.vertices.size_bytes());
+    std::vector<std::uint32_t> checksums;
+    constexpr std::size_t kBlock = obb::FileBlocks::kBlockBytes;
+    for (std::size_t at = 0; at < data.size(); at += kBlock) {
+        checksums.push_back(
+            obb::crc32(std::span(data).subspan(at, std::min(kBlock, data.size() - at))));
+    }
+    std::FILE* file = std::tmpfile();
+    if (file == nullptr || std::fwrite(data.data(), 1, data.size(), file) != data.size() ||
+        std::fflush(file) != 0) {
+        std::perror("a temporary file");
+        std::abort();
+    }
+    obb::FileBlocks::Descriptor descriptor(::dup(::fileno(file)));
+    std::fclose(file);
+    return obb::FileTree(std::move(descriptor), layout, std::move(checksums));
 }
 
 int faults(const Surface& s, const obb::BuildOptions& options) {
@@ -86,26 +147,12 @@ int faults(const Surface& s, const obb::BuildOptions& options) {
         obb::TreeBuilder tree_a(s.vertices, s.corners, options, true, 1);
         obb::TreeBuilder tree_b(s.vertices, s.corners, options, true, 2);
         const obb::TreeView a = tree_a.view(), b = tree_b.view();
-        std::vector<Answer> answers(kThreads * kPoses);
-        std::vector<std::thread> threads;
-        for (std::size_t t = 0; t < kThreads; ++t) {
-            threads.emplace_back([&, t] {
-                for (std::size_t i = 0; i < kPoses; ++i) {
-                    const std::size_t index = (i + 3 * t) % kPoses;
-                    answers[t * kPoses + index] = ask(a, b, index);
-                }
-            });
-        }
-        threads.emplace_back([&] {
+        found += wrong_answers(a, b, wanted, [&] {
             while (!tree_a.advance(500)) {
             }
         });
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
-        for (std::size_t i = 0; i < answers.size(); ++i) {
-            found += answers[i] == wanted[i % kPoses] ? 0 : 1;
-        }
+        obb::FileTree file_a = opened(whole), file_b = opened(whole);
+        found += wrong_answers(file_a.view(), file_b.view(), wanted, [&] { file_a.load_all(); });
     }
     return found;
 }
