@@ -15,6 +15,11 @@ using PackMask = std::int64_t __attribute__((vector_size(16))); // all bits or n
 using Four = double __attribute__((vector_size(32)));
 using FourMask = std::int64_t __attribute__((vector_size(32))); // all bits or none a lane
 
+// GCC takes packs of four for aligned to their size only where registers are as wide: a function
+// that is compiled for these would trip over what others laid out.
+template <>
+inline constexpr std::size_t kAlignment<Four> = sizeof(Four);
+
 // The same kernels run on doubles and on packs through these few.
 [[nodiscard]] inline double absolute(double a) { return std::fabs(a); }
 [[nodiscard]] inline Pack absolute(Pack a) {

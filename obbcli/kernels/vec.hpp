@@ -7,9 +7,12 @@
 
 namespace obb {
 
+template <typename Real>
+inline constexpr std::size_t kAlignment = alignof(Real);
+
 // Of doubles, or of packs of doubles where several shapes are treated at once.
 template <typename Real>
-struct Vector3 {
+struct alignas(kAlignment<Real>) Vector3 {
     Real x, y, z;
 
     [[nodiscard]] constexpr Real operator[](std::size_t k) const {
