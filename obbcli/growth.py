@@ -93,8 +93,9 @@ class Growth:
         self.kernel = self._builder.tree()
         self._lock = Lock()
         self._arrays: TreeArrays | None = None
-        # How many boxes the whole tree has; while the center rule leaves that open, at most.
-        self.possible_node_count = _possible_nodes(len(mesh.triangles), split, leaf_size, max_depth)
+        self.kernel.possible_node_count = _possible_nodes(
+            len(mesh.triangles), split, leaf_size, max_depth
+        )
 
     def arrays(self, progress: Callable[[float], object] | None = None) -> TreeArrays:
         """Make what is missing, and return the whole tree as arrays.
@@ -119,7 +120,7 @@ class Growth:
                 scale_exponent=self._builder.scale_exponent,
                 description=self.description,
             )
-            self.possible_node_count = len(nodes)
+            self.kernel.possible_node_count = len(nodes)
             return self._arrays
 
     @property
@@ -135,7 +136,7 @@ class Growth:
     @property
     def node_count(self) -> int:
         """How many boxes there are so far."""
-        return self._builder.node_count
+        return self.kernel.node_count
 
     @property
     def nbytes(self) -> int:

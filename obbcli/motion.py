@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 
+from obbcli import kernels
 from obbcli.arrays import as_floats, as_vector
 from obbcli.errors import MotionError
 from obbcli.pose import Pose, vector_or_zero
@@ -300,6 +301,17 @@ class Body:
         fields["shape"] = shape
         fields["pose"] = pose
         fields["motion"] = motion
+
+    @cached_property
+    def placed(self) -> kernels.Placed | None:
+        """The tree at its pose as the kernels see it; None where the shape is no tree yet."""
+        tree = getattr(self.shape, "kernel", None)
+        return None if tree is None else kernels.Placed(tree, self.pose.kernel)
+
+    @cached_property
+    def at_rest(self) -> kernels.Placed | None:
+        """The same of a body that does not move; None of others."""
+        return self.placed if self.motion.is_at_rest else None
 
 
 def as_body(shape: Body | Shape) -> Body:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -11,26 +10,24 @@ from obbcli.accuracy import Accuracy
 from obbcli.motion import as_body
 from obbcli.question import (
     NO_LIMIT,
-    box_limits,
     duration_of,
+    limits_of,
+    placed_of,
     refused,
-    stats_of,
     trees_of,
     whole_limit,
 )
-from obbcli.verdict import Collision, Status
+from obbcli.verdict import Collision
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from obbcli.motion import Body, Shape
-    from obbcli.question import Trees
     from obbcli.results import FirstContact
 
 _EXACT = Accuracy()
-# Looking them up in the enumeration takes as long as a test of two boxes.
-_SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
+_EXACT_LIMITS = limits_of(_EXACT)
 
 
 def collide(
@@ -64,6 +61,14 @@ def collide(
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
+    if duration is None and accuracy is None and not solid:
+        # What most ask, in the fewest steps: there are bodies that take less than a microsecond.
+        here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
+        if here is not None and there is not None:
+            try:
+                return Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
+            except (ValueError, kernels.TreeError) as fault:
+                raise refused(trees_of((as_body(a), as_body(b))), fault) from fault
     accuracy = _EXACT if accuracy is None else accuracy
     bodies = as_body(a), as_body(b)
     is_at_rest = duration_of(duration, bodies) == 0 and accuracy.clearance == 0
@@ -71,15 +76,12 @@ def collide(
         return _collide_moving(bodies, duration, accuracy, solid)
     start = perf_counter()
     trees = trees_of(bodies)
-    loaded = perf_counter()
-    is_complete, by_boxes, error_bound, witness, counts = _at_rest(trees, bodies, accuracy)
-    seconds = {"load": loaded - start, "query": perf_counter() - loaded}
-    status = _SEPARATED
-    if by_boxes or witness is not None:
-        status = _OVERLAP_AT_START
-    elif not is_complete:
-        status = Status.UNRESOLVED
-    return Collision(status, witness, by_boxes, error_bound, stats_of(trees, counts, seconds))
+    loaded = perf_counter() - start
+    here, there = (placed_of(*pair) for pair in zip(bodies, trees, strict=True))
+    try:
+        return Collision.at_rest(kernels.collide(here, there, limits_of(accuracy)), loaded)
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault
 
 
 def _collide_moving(
@@ -103,26 +105,6 @@ def collision_of(found: FirstContact) -> Collision:
         contained=found.contained,
         stats=found.stats,
     )
-
-
-def _at_rest(
-    trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy
-) -> tuple[bool, bool, float, tuple[int, int] | None, tuple[int, int, int, int]]:
-    """Return whether the question was answered, whether boxes met, their gap, witness, counts."""
-    (tree_a, tree_b), (a, b) = trees, bodies
-    timeout = accuracy.timeout
-    try:
-        return kernels.collide(
-            tree_a.kernel,
-            a.pose.kernel,
-            tree_b.kernel,
-            b.pose.kernel,
-            *box_limits(accuracy),
-            accuracy.max_iterations,
-            math.inf if timeout is None else timeout,
-        )
-    except (ValueError, kernels.TreeError) as fault:
-        raise refused(trees, fault) from fault
 
 
 def triangle_pairs(
@@ -160,11 +142,9 @@ def triangle_pairs(
     most = NO_LIMIT if limit is None else whole_limit(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
-    (tree_a, tree_b), (body_a, body_b) = trees, bodies
+    here, there = (placed_of(*pair) for pair in zip(bodies, trees, strict=True))
     try:
-        found, _counts = kernels.triangle_pairs(
-            tree_a.kernel, body_a.pose.kernel, tree_b.kernel, body_b.pose.kernel, most, workers
-        )
+        found, _counts = kernels.triangle_pairs(here, there, most, workers)
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
     return found

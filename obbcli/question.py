@@ -108,6 +108,19 @@ def pivot_of(body: Body, tree: ObbTree) -> NDArray[np.float64]:
     return pivot
 
 
+def limits_of(accuracy: Accuracy) -> kernels.Limits:
+    """Return where boxes stand for triangles and when to stop, as the kernels see it."""
+    timeout = accuracy.timeout
+    seconds = math.inf if timeout is None else timeout
+    pops = min(accuracy.max_iterations, NO_LIMIT)
+    return kernels.Limits(*box_limits(accuracy), pops, seconds)
+
+
+def placed_of(body: Body, tree: ObbTree) -> kernels.Placed:
+    """Return a body's tree where its pose puts it."""
+    return body.placed or kernels.Placed(tree.kernel, body.pose.kernel)
+
+
 def static_query(
     trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy
 ) -> kernels.StaticQuery:
@@ -119,9 +132,7 @@ def static_query(
     """
     (tree_a, tree_b), (a, b) = trees, bodies
     try:
-        return kernels.StaticQuery(
-            tree_a.kernel, a.pose.kernel, tree_b.kernel, b.pose.kernel, *box_limits(accuracy)
-        )
+        return kernels.StaticQuery(placed_of(a, tree_a), placed_of(b, tree_b), limits_of(accuracy))
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
 

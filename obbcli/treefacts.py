@@ -16,6 +16,7 @@ from obbcli.errors import MeshError, TreeFileError
 from obbcli.growth import Growth
 from obbcli.mesh import Mesh
 from obbcli.mesh.measure import diagonal
+from obbcli.pose import Pose
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,6 +53,11 @@ class TreeFacts:
         self.kernel = (
             self._kernel_of(made) if isinstance(made, treefile.TreeArrays) else made.kernel
         )
+
+    @cached_property
+    def at_rest(self) -> kernels.Placed:
+        """The tree as its file has it, as the kernels see it: that of a body without a motion."""
+        return kernels.Placed(self.kernel, Pose().kernel)
 
     def _kernel_of(self, arrays: treefile.TreeArrays) -> kernels.Tree:
         try:
@@ -174,12 +180,8 @@ class TreeFacts:
         return self.node_counts()[1]
 
     def node_counts(self) -> tuple[int, int]:
-        """Return `node_count` and `possible_node_count`, for those who count in microseconds."""
-        made = self._made
-        if isinstance(made, Growth):
-            return made.node_count, made.possible_node_count
-        count = len(made.nodes) if isinstance(made, treefile.TreeArrays) else made.node_count
-        return count, count
+        """Return `node_count` and `possible_node_count`."""
+        return self.kernel.node_count, self.kernel.possible_node_count
 
     @cached_property
     def levels(self) -> tuple[Level, ...]:

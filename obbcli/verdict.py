@@ -7,12 +7,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from obbcli.errors import UnresolvedError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    _Counts = tuple[int, int, int, int, int, int, int, int]
+    # What `Collision.at_rest` takes.
+    Found = tuple[bool, bool, float, tuple[int, int] | None, float, _Counts]
 
 # The body that lies inside the other, or a part of it does.
 Inner: TypeAlias = Literal["a", "b"]
@@ -33,6 +38,12 @@ class Status(str, Enum):
     def __str__(self) -> str:
         """Return the bare word."""
         return self.value
+
+
+# Looking them up in the enumeration takes as long as a test of two boxes.
+_SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
+_UNRESOLVED = Status.UNRESOLVED
+_new = object.__new__
 
 
 class QueryStats(NamedTuple):
@@ -105,6 +116,36 @@ class Collision:
         fields["stats"] = stats
         fields["contained"] = contained
 
+    @classmethod
+    def at_rest(cls, found: Found, load: float = 0.0) -> Collision:
+        """Return what the kernels found of bodies at rest.
+
+        Args:
+            found: whether the question was answered, whether boxes met, how far apart these hold
+                what they stand for, the witness, s of wall time, and the numbers of `QueryStats`.
+            load: s of wall time that the trees took before.
+        """
+        is_complete, by_boxes, error_bound, witness, seconds, counts = found
+        status = _SEPARATED
+        if by_boxes or witness is not None:
+            status = _OVERLAP_AT_START
+        elif not is_complete:
+            status = _UNRESOLVED
+        made: Collision = _new(cls)
+        fields = made.__dict__
+        fields["status"] = status
+        fields["witness"] = witness
+        fields["approximate"] = by_boxes
+        fields["error_bound"] = error_bound
+        fields["contained"] = None
+        fields["_cost"] = counts, load, seconds
+        return made
+
+    def _stats(self) -> QueryStats:
+        cost: tuple[_Counts, float, float] = vars(self)["_cost"]
+        counts, load, seconds = cost
+        return QueryStats(*counts, {"load": load, "query": seconds})
+
     @property
     def collides(self) -> bool:
         """Return whether the bodies touch.
@@ -112,7 +153,18 @@ class Collision:
         Raises:
             UnresolvedError: a limit was reached before the answer was known.
         """
-        return is_contact(self.status)
+        # Not by is_contact() alone: the call takes as long as a test of two boxes.
+        status = self.status
+        if status is _UNRESOLVED:
+            return is_contact(status)
+        return status is not _SEPARATED
+
+
+# Only made where they are looked at: that takes as long as many a question. Set from here, so that
+# the field has no default.
+_late = cached_property(Collision._stats)
+_late.__set_name__(Collision, "stats")
+Collision.stats = _late  # type: ignore[assignment]
 
 
 def is_contact(status: Status) -> bool:

@@ -1,6 +1,7 @@
 // What the bindings share: arrays across the border, and the trees that keep theirs alive.
 #pragma once
 
+#include "pose.hpp"
 #include "tree.hpp"
 
 #include <nanobind/nanobind.h>
@@ -16,6 +17,10 @@
 #include <vector>
 
 namespace nb = nanobind;
+
+namespace obb {
+class TreeBuilder;
+}
 
 template <typename T, nb::ssize_t kColumns>
 using Rows =
@@ -62,10 +67,23 @@ struct Tree {
     Column<std::uint32_t> triangle_ids;
     Rows<std::uint8_t, 64> nodes;
     obb::TreeView view;
+    const obb::TreeBuilder* builder = nullptr; // of a tree that grows
+    // How many boxes the whole tree has; where its builder leaves that open, at most.
+    std::uint64_t possible_node_count = view.nodes.size();
+
+    [[nodiscard]] std::uint64_t node_count() const;
 };
 
 // A tree as the object that Python knows, for those who keep it alive.
 using TreeObject = nb::typed<nb::object, Tree>;
+
+// A tree where a pose puts it. It keeps the tree alive itself, as nanobind's keep_alive takes
+// longer than many a query does.
+struct Placed {
+    nb::object owner;
+    const Tree* tree;
+    obb::Pose pose;
+};
 
 // Pops between two looks at clock and signals: a few milliseconds.
 inline constexpr std::uint64_t kPopsASlice = 16'384;
@@ -88,12 +106,22 @@ inline bool advance(Query& query, std::uint64_t brief, std::uint64_t max_pops) {
     return query.advance(max_pops - brief);
 }
 
+// Wall time since it was made.
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 // Advances a query to its end or to a limit, in pops or seconds; true when its answer is complete.
 // Throws what a signal's handler raised.
 template <typename Query>
-inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, double seconds) {
-    using Seconds = std::chrono::duration<double>;
-    const auto start = std::chrono::steady_clock::now();
+inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, const Stopwatch& watch,
+                double seconds) {
     for (;;) {
         const std::uint64_t slice = std::min(kPopsASlice, max_pops);
         if (advance(query, brief, slice)) {
@@ -103,7 +131,7 @@ inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, doubl
             throw nb::python_error();
         }
         max_pops -= slice;
-        if (max_pops == 0 || Seconds(std::chrono::steady_clock::now() - start).count() >= seconds) {
+        if (max_pops == 0 || watch.seconds() >= seconds) {
             return false;
         }
     }

@@ -36,26 +36,30 @@ void init_pose(
     }
 }
 
-// A query, and the trees it looks at: held here, as nanobind's keep_alive takes longer than many a
-// query does.
+// Where boxes stand for triangles, and how long to go on.
+struct Limits {
+    bool boxes_for_leaves;
+    std::uint32_t max_depth_a, max_depth_b;
+    std::uint64_t max_pops;
+    double seconds;
+
+    [[nodiscard]] obb::StaticQueryOptions options() const {
+        return {false, boxes_for_leaves, max_depth_a, max_depth_b};
+    }
+};
+
+// A query, and what keeps its trees alive.
 struct AtRest {
     nb::object a, b;
     std::uint64_t brief;
     obb::StaticQuery query;
 };
 
-void init_query(AtRest* self, const TreeObject& a, const obb::Pose& pose_a, const TreeObject& b,
-                const obb::Pose& pose_b, bool boxes_for_leaves, std::uint32_t max_depth_a,
-                std::uint32_t max_depth_b) {
-    const Tree &tree_a = nb::cast<const Tree&>(a), &tree_b = nb::cast<const Tree&>(b);
-    new (self) AtRest{a,
-                      b,
-                      brief_pops(tree_a, tree_b),
-                      {tree_a.view,
-                       pose_a,
-                       tree_b.view,
-                       pose_b,
-                       {false, boxes_for_leaves, max_depth_a, max_depth_b}}};
+void init_query(AtRest* self, const Placed& a, const Placed& b, const Limits& limits) {
+    new (self) AtRest{a.owner,
+                      b.owner,
+                      brief_pops(*a.tree, *b.tree),
+                      {a.tree->view, a.pose, b.tree->view, b.pose, limits.options()}};
 }
 
 using Witness = std::optional<std::pair<std::int64_t, std::int64_t>>;
@@ -75,17 +79,25 @@ Counts counts_of(const obb::StaticQuery& query) {
 }
 
 // Whether the question was answered, whether boxes met, how far apart these hold what they stand
-// for, witness, counts
-using Collision = std::tuple<bool, bool, double, Witness, Counts>;
+// for, witness, seconds, counts and of either tree the boxes there are and may be
+using Collision =
+    std::tuple<bool, bool, double, Witness, double,
+               std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
+                          std::uint64_t, std::uint64_t, std::uint64_t>>;
 
-Collision collide(const Tree& a, const obb::Pose& pose_a, const Tree& b, const obb::Pose& pose_b,
-                  bool boxes_for_leaves, std::uint32_t max_depth_a, std::uint32_t max_depth_b,
-                  std::uint64_t max_pops, double seconds) {
-    obb::StaticQuery query(a.view, pose_a, b.view, pose_b,
-                           {false, boxes_for_leaves, max_depth_a, max_depth_b});
-    const bool is_complete = run(query, brief_pops(a, b), max_pops, seconds);
-    return {is_complete, query.is_by_boxes(), query.error_bound(), witness_of(query),
-            counts_of(query)};
+Collision collide(const Placed& a, const Placed& b, const Limits& limits) {
+    const Stopwatch watch;
+    obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, limits.options());
+    const bool is_complete =
+        run(query, brief_pops(*a.tree, *b.tree), limits.max_pops, watch, limits.seconds);
+    const obb::StaticQueryCounts& c = query.counts();
+    return {is_complete,
+            query.is_by_boxes(),
+            query.error_bound(),
+            witness_of(query),
+            watch.seconds(),
+            {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops, a.tree->node_count(),
+             b.tree->node_count(), a.tree->possible_node_count, b.tree->possible_node_count}};
 }
 
 // Parts are several a thread, for they differ in size.
@@ -101,20 +113,18 @@ void advance_in_parts(obb::StaticQuery& query, unsigned threads) {
 
 // The pairs and what they cost. Which ones a limit leaves depends on the order in which they are
 // found: there, one thread works.
-std::pair<Owned<std::int64_t, -1, 2>, Counts> triangle_pairs(const Tree& a, const obb::Pose& pose_a,
-                                                             const Tree& b, const obb::Pose& pose_b,
-                                                             std::uint64_t limit,
-                                                             unsigned threads) {
+std::pair<Owned<std::int64_t, -1, 2>, Counts>
+triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned threads) {
     // Below so many pops, threads cost more than they save.
     constexpr std::uint64_t kPopsAlone = 1024;
     constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
     obb::StaticQueryOptions options;
     options.all_pairs = true;
     options.limit = limit;
-    obb::StaticQuery query(a.view, pose_a, b.view, pose_b, options);
-    const std::uint64_t brief = brief_pops(a, b);
+    obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options);
+    const std::uint64_t brief = brief_pops(*a.tree, *b.tree);
     if (threads < 2 || limit != kNoLimit) {
-        run(query, brief, kNoLimit, std::numeric_limits<double>::infinity());
+        run(query, brief, kNoLimit, {}, std::numeric_limits<double>::infinity());
     } else if (!advance(query, brief, kPopsAlone)) {
         advance_in_parts(query, threads);
     }
@@ -126,14 +136,29 @@ std::pair<Owned<std::int64_t, -1, 2>, Counts> triangle_pairs(const Tree& a, cons
 void bind_static_query(nb::module_& m) {
     nb::class_<obb::Pose>(m, "Pose").def("__init__", &init_pose, "rotation"_a, "translation"_a);
 
-    m.def("collide", &collide, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,
-          "max_depth_a"_a, "max_depth_b"_a, "max_pops"_a, "seconds"_a);
-    m.def("triangle_pairs", &triangle_pairs, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "limit"_a,
-          "threads"_a);
+    nb::class_<Placed>(m, "Placed")
+        .def(
+            "__init__",
+            [](Placed* self, const TreeObject& tree, const obb::Pose& pose) {
+                new (self) Placed{tree, nb::cast<const Tree*>(tree), pose};
+            },
+            "tree"_a, "pose"_a);
+
+    nb::class_<Limits>(m, "Limits")
+        .def(
+            "__init__",
+            [](Limits* self, bool boxes_for_leaves, std::uint32_t max_depth_a,
+               std::uint32_t max_depth_b, std::uint64_t max_pops, double seconds) {
+                new (self) Limits{boxes_for_leaves, max_depth_a, max_depth_b, max_pops, seconds};
+            },
+            "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "max_pops"_a, "seconds"_a);
+
+    // Arguments without names cost less.
+    m.def("collide", &collide);
+    m.def("triangle_pairs", &triangle_pairs);
 
     nb::class_<AtRest>(m, "StaticQuery")
-        .def("__init__", &init_query, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "boxes_for_leaves"_a,
-             "max_depth_a"_a, "max_depth_b"_a)
+        .def("__init__", &init_query)
         .def(
             "advance",
             [](AtRest& self, std::uint64_t max_pops) {

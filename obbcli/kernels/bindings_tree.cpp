@@ -84,6 +84,10 @@ std::vector<std::tuple<std::uint64_t, std::uint64_t, double>> levels_of(const Tr
 
 } // namespace
 
+std::uint64_t Tree::node_count() const {
+    return builder == nullptr ? view.nodes.size() : builder->node_count();
+}
+
 void bind_tree(nb::module_& m) {
     nb::enum_<obb::Fit>(m, "Fit")
         .value("TRIANGLES", obb::Fit::kTriangles)
@@ -105,7 +109,9 @@ void bind_tree(nb::module_& m) {
                 return obb::tree_check(tree.view, leaf_size, max_depth);
             },
             "leaf_size"_a, "max_depth"_a)
-        .def("levels", &levels_of);
+        .def("levels", &levels_of)
+        .def_prop_ro("node_count", &Tree::node_count)
+        .def_rw("possible_node_count", &Tree::possible_node_count);
 
     nb::class_<TreeBuilder>(m, "TreeBuilder")
         .def("__init__", &init_builder, "vertices"_a, "corners"_a, "fit"_a, "split"_a,
@@ -117,7 +123,9 @@ void bind_tree(nb::module_& m) {
         .def("progress", [](const TreeBuilder& self) { return self.builder.progress(); })
         .def(
             "tree",
-            [](const TreeBuilder& self) { return Tree{{}, {}, {}, {}, self.builder.view()}; },
+            [](const TreeBuilder& self) {
+                return Tree{{}, {}, {}, {}, self.builder.view(), &self.builder};
+            },
             nb::keep_alive<0, 1>())
         .def("arrays", &arrays_of)
         .def_prop_ro("scale_exponent",

@@ -1,5 +1,6 @@
 #include "query_frame.hpp"
 
+#include "extremes.hpp"
 #include "scale.hpp"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ double skew_of(const Mat3& m) {
     double skew = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
-            skew = std::fmax(skew, std::fabs(dot(m.column(i), m.column(j)) - (i == j ? 1.0 : 0.0)));
+            skew = larger(skew, std::fabs(dot(m.column(i), m.column(j)) - (i == j ? 1.0 : 0.0)));
         }
     }
     return skew;

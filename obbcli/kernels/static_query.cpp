@@ -21,9 +21,9 @@ void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
     matrix_ = matrix;
     offset_ = offset;
     is_moved_ = !(matrix == Mat3::identity() && offset == Vec3{0, 0, 0});
-    scale_ = std::ldexp(1.0, tree_->scale_exponent - exponent);
+    scale_ = power_of_two(tree_->scale_exponent - exponent);
     const int half = -exponent / 2;
-    vertex_scales_ = {std::ldexp(1.0, half), std::ldexp(1.0, -exponent - half)};
+    vertex_scales_ = {power_of_two(half), power_of_two(-exponent - half)};
 }
 
 template <typename Real>
@@ -75,13 +75,11 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     exponent_ = frame.exponent;
-    const auto placed = std::make_shared<LaneFrame>();
-    placed->node_scale = halves(a_.node_scale(), b_.node_scale());
+    frame_.node_scale = halves(a_.node_scale(), b_.node_scale());
     for (std::size_t i = 0; i < 3; ++i) {
-        placed->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
+        frame_.matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
     }
-    placed->shift = halves(a_.offset(), b_.offset());
-    frame_ = placed;
+    frame_.shift = halves(a_.offset(), b_.offset());
     // As if both were children of a node.
     open({a.root(), b.root()}, false, false);
 }
@@ -171,7 +169,7 @@ void StaticQuery::open(const Pair& pair, bool opens_a, bool opens_b) {
     };
     BasicObb<Four> boxes;
     const unsigned meeting = meeting_pairs(
-        *frame_,
+        frame_,
         {node(a_, a.refs[0]), node(a_, a.refs[1]), node(b_, b.refs[0]), node(b_, b.refs[1])},
         bound_, boxes);
     std::array<Triangle, 4> triangles;

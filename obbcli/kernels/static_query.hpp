@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -131,8 +130,7 @@ class StaticQuery {
     StaticQueryOptions options_;
     RoundingBound bound_{};
     int exponent_ = 0;
-    // Apart from this object, which Python aligns no better than others.
-    std::shared_ptr<const LaneFrame> frame_;
+    LaneFrame frame_{};
     std::vector<Pair> stack_;
     std::vector<TrianglePair> pairs_;
     bool is_by_boxes_ = false;
