@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from obbcli.contact import Query
     from obbcli.pose import Pose
     from obbcli.question import Trees
-    from obbcli.relay import Asker
     from obbcli.tree import ObbTree
 
 # Of the coordinates: posing a vertex thrice (12 u each), a matrix product (16 u) and the pose in
@@ -118,25 +117,19 @@ class LegQueries(Relay):
     the lower bound too. Where that is contact, the leg's own path is asked for its evidence, and
     then the instant at which the next leg starts; if neither shows any, closeness remains.
 
-    Args:
-        bodies: with paths.
-        trees: theirs.
-        duration: s.
-        accuracy: its time tolerance in s.
-        ask: makes the question about a leg.
     """
 
-    def __init__(
-        self,
+    _near: FirstContact | None = None
+    _is_at_end = False  # only the instant after the leg of the near contact is left
+
+    @staticmethod
+    def _legs_of(
         bodies: tuple[Body, Body],
         trees: Trees,
         duration: float,
-        accuracy: Accuracy,
-        ask: Asker,
-    ) -> None:
-        super().__init__(legs_of(bodies, trees, duration), duration, accuracy, ask)
-        self._near: FirstContact | None = None
-        self._is_at_end = False  # only the instant after the leg of the near contact is left
+        accuracy: Accuracy,  # noqa: ARG004
+    ) -> Iterator[Leg]:
+        return legs_of(bodies, trees, duration)
 
     @property
     def lower_bound(self) -> float:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.contact import Query
     from obbcli.motion import Body
+    from obbcli.question import Trees
     from obbcli.results import QueryStats
 
     Asker = Callable[[Body, Body, float, Accuracy], Query]
@@ -53,16 +54,22 @@ class Relay(ABC):
     """The questions about legs as one that can be advanced.
 
     Args:
-        legs: at least one, earliest first.
+        bodies: that move.
+        trees: theirs.
         duration: s, of the whole.
-        accuracy: what each question is asked with.
+        accuracy: what is asked of the answer; its time tolerance in s.
         ask: makes the question about a leg.
     """
 
     def __init__(
-        self, legs: Iterator[Leg], duration: float, accuracy: Accuracy, ask: Asker
+        self,
+        bodies: tuple[Body, Body],
+        trees: Trees,
+        duration: float,
+        accuracy: Accuracy,
+        ask: Asker,
     ) -> None:
-        self._legs = legs
+        self._legs = self._legs_of(bodies, trees, duration, accuracy)
         self._duration = duration
         self._accuracy = accuracy
         self._ask = ask
@@ -71,6 +78,13 @@ class Relay(ABC):
         self._answer: FirstContact | None = None
         self._leg = next(self._legs)
         self._query = self._ask_about(self._leg)
+
+    @staticmethod
+    @abstractmethod
+    def _legs_of(
+        bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy
+    ) -> Iterator[Leg]:
+        """Yield at least one leg, earliest first."""
 
     @property
     @abstractmethod

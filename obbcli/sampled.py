@@ -13,10 +13,8 @@ from obbcli.results import FirstContact, Status
 from obbcli.steps import steps_of
 
 if TYPE_CHECKING:
-    from obbcli.accuracy import Accuracy
-    from obbcli.motion import Body
-    from obbcli.question import Trees
-    from obbcli.relay import Asker
+    from obbcli.contact import Query
+    from obbcli.relay import Leg
 
 
 class SampledQueries(Relay):
@@ -25,26 +23,12 @@ class SampledQueries(Relay):
     Contact at t = 0 is decided exactly, since nothing has been sampled then. All else is said of
     the modelled paths alone: it is `approximate`, contact has `evidence="sampled"`, and the
     `error_bound` covers the steps up to it. No time but 0 is a proven bound.
-
-    Args:
-        bodies: of which one moves.
-        trees: theirs.
-        duration: s, more than 0.
-        accuracy: with steps and integrator, and a time tolerance in s.
-        ask: makes the question about a step.
+    The duration is more than 0.
     """
 
-    def __init__(
-        self,
-        bodies: tuple[Body, Body],
-        trees: Trees,
-        duration: float,
-        accuracy: Accuracy,
-        ask: Asker,
-    ) -> None:
-        certified = replace(accuracy, method="certified")
-        super().__init__(steps_of(bodies, trees, duration, accuracy), duration, certified, ask)
-        self._error = self._leg.slack
+    _error = 0.0
+
+    _legs_of = staticmethod(steps_of)
 
     @property
     def lower_bound(self) -> float:
@@ -55,6 +39,10 @@ class SampledQueries(Relay):
     def time(self) -> float:
         """When the present step starts, s."""
         return self._leg.start
+
+    def _ask_about(self, leg: Leg) -> Query:
+        self._error = max(self._error, leg.slack)
+        return self._ask(*leg.bodies, leg.duration, replace(self._accuracy, method="certified"))
 
     def _conclude(self, found: FirstContact) -> FirstContact | None:
         if found.status is Status.UNRESOLVED:
@@ -70,7 +58,6 @@ class SampledQueries(Relay):
                 error_bound=self._error,
                 stats=found.stats,
             )
-        self._error = max(self._error, leg.slack)
         self._go_on(leg, self._ask_about)
         return None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import struct
 from itertools import product
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ from oracles import triangles_intersect
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
 # The six sides of the unit cube, two triangles each, by corner numbers with bits x, y, z.
 CUBE_SIDES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
@@ -35,6 +37,12 @@ def obj(corners: Sequence[Sequence[float]]) -> str:
     """Return a cube as an OBJ file."""
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in corners]
     return "\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in CUBE_FACES]) + "\n"
+
+
+def as_input(path: Path) -> dict[str, object]:
+    """Return what documents say of a cube's file that was named from its folder."""
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    return {"path": path.name, "sha256": digest, "triangle_count": 12}
 
 
 def stl(corners: Sequence[Sequence[float]]) -> bytes:

@@ -6,26 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles_screw import Mover
-from scenes import random_rotation
 from screw_answers import as_body
-from screw_meshes import cube, octahedron
+from screw_flyby import flyby
+from screw_meshes import cube
 
 import obbcli
 from obbcli import Accuracy, Body, Contact, Mesh, Motion, Status, UnresolvedError
-
-
-def movers(seed: int, *, turning: bool) -> tuple[Mover, Mover]:
-    """Return two solids that approach each other from a random side."""
-    rng = np.random.default_rng(seed)
-    way = rng.normal(size=3)
-    way *= 4 / np.linalg.norm(way)
-    spins = rng.normal(size=(2, 3)) if turning else np.zeros((2, 3))
-    a = Mover(*cube(), rotation=random_rotation(rng), spin=spins[0])
-    b = Mover(
-        *octahedron(), rotation=random_rotation(rng), translation=way, velocity=-way, spin=spins[1]
-    )
-    return a, b
 
 
 def alone(body: Body, row: int) -> Body:
@@ -37,7 +23,7 @@ def alone(body: Body, row: int) -> Body:
 @pytest.mark.parametrize("turning", [False, True], ids=["going", "turning"])
 @pytest.mark.parametrize("seed", range(12))
 def test_every_pair_has_the_contact_it_has_alone(seed: int, turning: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(seed, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(seed, turning=turning))
     found = {(c.triangle_a, c.triangle_b): c for c in obbcli.contacts(a, b)}
     for i in range(len(a.shape.triangles)):
         for j in range(len(b.shape.triangles)):
@@ -52,7 +38,7 @@ def test_every_pair_has_the_contact_it_has_alone(seed: int, turning: bool) -> No
 
 @pytest.mark.parametrize("turning", [False, True], ids=["going", "turning"])
 def test_contacts_come_in_order_of_time_and_the_first_is_first_contact(turning: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(1, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(1, turning=turning))
     times = [c.time for c in obbcli.contacts(a, b)]
     assert times == sorted(times)
     first = obbcli.first_contact(a, b)
@@ -71,7 +57,7 @@ def test_pairs_at_start_are_triangle_pairs() -> None:
 
 
 def test_a_limit_names_what_is_known() -> None:
-    a, b = (as_body(mover) for mover in movers(1, turning=True))
+    a, b = (as_body(mover) for mover in flyby(1, turning=True))
     known: list[Contact] = []
     with pytest.raises(UnresolvedError, match="all contacts before t = "):
         known.extend(obbcli.contacts(a, b, accuracy=Accuracy(max_iterations=20)))
@@ -85,7 +71,7 @@ def test_senseless_limits_are_refused_at_once(limit: Any) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_paths_have_the_contacts_of_the_motion_they_follow(seed: int) -> None:
-    a, b = (as_body(mover) for mover in movers(seed, turning=True))
+    a, b = (as_body(mover) for mover in flyby(seed, turning=True))
     times = [0.0, 0.3, 0.55, 1.0]
     pivot = a.pose.apply(np.mean(a.shape.vertices, axis=0)[None])[0]
     motion = Motion(a.motion.linear_velocity, a.motion.angular_velocity, pivot)
@@ -114,7 +100,7 @@ def split(body: Body, pieces: int) -> Body:
 
 @pytest.mark.parametrize("follows", [False, True], ids=["constant", "path"])
 def test_nothing_before_the_time_of_a_limit_is_lost(follows: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(2, turning=True))
+    a, b = (as_body(mover) for mover in flyby(2, turning=True))
     a = split(a, 5) if follows else a
     every = list(obbcli.contacts(a, b))
     assert len(every) > 20

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles_screw import Mover
-from scenes import random_rotation
 from screw_answers import as_body, assert_coherent
-from screw_meshes import box, cube, octahedron, star
+from screw_flyby import flyby
+from screw_meshes import box, cube, star
 
 import obbcli
 from obbcli import Accuracy, Body, Contact, Mesh, Motion, ObbTree, Status
@@ -20,24 +20,6 @@ from obbcli.search import Search
 
 SAMPLES = Path(__file__).resolve().parents[1] / "sample_meshes"
 MANY = 10**7
-
-
-def movers(seed: int, *, turning: bool) -> tuple[Mover, Mover]:
-    """Return two solids that turn about their own middles and fly through each other."""
-    rng = np.random.default_rng(seed)
-    way = rng.normal(size=3)
-    way *= 4 / np.linalg.norm(way)
-    spins = rng.normal(size=(2, 3)) if turning else np.zeros((2, 3))
-    a = Mover(*cube(), rotation=random_rotation(rng), spin=spins[0])
-    b = Mover(
-        *octahedron(),
-        rotation=random_rotation(rng),
-        translation=way,
-        velocity=-2 * way,
-        spin=spins[1],
-        pivot=way,
-    )
-    return a, b
 
 
 def by_pair(a: Body, b: Body, duration: float | None = None, **accuracy: Any) -> dict[Any, Contact]:
@@ -67,7 +49,7 @@ TURNING = pytest.mark.parametrize("turning", [False, True], ids=["going", "turni
 @TURNING
 @pytest.mark.parametrize("seed", range(6))
 def test_swapped_bodies_have_the_same_contacts(seed: int, turning: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(seed, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(seed, speed=2, about_middle=True, turning=turning))
 
     forth = by_pair(a, b)
     back = {(i, j): contact for (j, i), contact in by_pair(b, a).items()}
@@ -80,7 +62,7 @@ def test_swapped_bodies_have_the_same_contacts(seed: int, turning: bool) -> None
 @pytest.mark.parametrize("seed", range(6))
 def test_order_of_triangles_changes_ids_alone(seed: int, turning: bool) -> None:
     rng = np.random.default_rng(100 + seed)
-    a, b = (as_body(mover) for mover in movers(seed, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(seed, speed=2, about_middle=True, turning=turning))
     orders = [rng.permutation(len(body.shape.triangles)) for body in (a, b)]
     mixed = [
         Body(Mesh(body.shape.vertices, body.shape.triangles[order]), body.pose, body.motion)
@@ -109,7 +91,7 @@ def test_pair_that_meets_in_every_turn_is_told_once(turns: int) -> None:
 
 @TURNING
 def test_larger_clearance_delays_no_contact(turning: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(1, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(1, speed=2, about_middle=True, turning=turning))
     lists = [by_pair(a, b, clearance=clearance) for clearance in (0.0, 0.0625, 0.25)]
 
     assert len(lists[0]) < len(lists[2])
@@ -140,7 +122,7 @@ def test_meshing_teeth_meet_pair_by_pair_and_each_contact_is_one() -> None:
 @TURNING
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_each_pair_of_boxes_is_one_contact(depth: int, turning: bool) -> None:
-    a, b = (as_body(mover) for mover in movers(2, turning=turning))
+    a, b = (as_body(mover) for mover in flyby(2, speed=2, about_middle=True, turning=turning))
     exact = by_pair(a, b)
 
     found = list(obbcli.contacts(a, b, accuracy=Accuracy(max_depth_a=depth, max_depth_b=depth)))
@@ -157,7 +139,7 @@ def test_each_pair_of_boxes_is_one_contact(depth: int, turning: bool) -> None:
 
 
 def test_leaves_of_several_triangles_meet_as_boxes_where_asked() -> None:
-    a, b = movers(3, turning=True)
+    a, b = flyby(3, speed=2, about_middle=True, turning=True)
     trees = [ObbTree.build(Mesh(m.vertices, m.faces), leaf_size=3) for m in (a, b)]
     bodies = [
         Body(tree, as_body(mover).pose, as_body(mover).motion)

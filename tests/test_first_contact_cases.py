@@ -6,6 +6,7 @@ from typing import Any
 import cases
 import numpy as np
 import pytest
+from case_movers import foreign_mover, rigid_mover
 from oracles_screw import Mover
 from screw_answers import ask, assert_bracket, assert_coherent, bounds
 
@@ -18,19 +19,6 @@ STATUSES = {
 }
 # The files' times are printed doubles of a second.
 PRINTED = 4e-16
-
-
-def rigid_mover(record: dict[str, Any]) -> Mover:
-    mesh = cases.rigid_meshes()[record["mesh"]]
-    vertices = np.array(mesh["vertices"], dtype=np.float64) * record["scale"]
-    pose = np.array(record["R"], dtype=np.float64), record["t"]
-    return Mover(vertices, np.array(mesh["faces"]), *pose, record["V"], record["W"], record["K"])
-
-
-def foreign_mover(record: dict[str, Any]) -> Mover:
-    pose = np.array(record["rotation0"]), record["translation0"]
-    motion = record["linear_velocity"], record["angular_velocity"], record["rotation_centre_world"]
-    return Mover(np.array(record["vertices"]), np.array(record["faces"]), *pose, *motion)
 
 
 def benchmark_movers(record: dict[str, Any]) -> tuple[Mover, Mover]:

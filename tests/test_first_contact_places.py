@@ -9,13 +9,13 @@ from typing import Any
 import cases
 import numpy as np
 import pytest
+from case_movers import foreign_mover, rigid_mover
 from oracles_screw import Mover, screw_first_contact
 from screw_answers import ask, assert_bracket, assert_coherent, assert_place, assert_width, bounds
 from screw_meshes import cube
 from screw_planes import plane_time
 from screw_random import KINDS, Kind, random_pair
 from screw_scenes import ScrewScene, X, Y, Z, against_plane, all_scenes, rod
-from test_first_contact_cases import foreign_mover, rigid_mover
 
 from obbcli import Status
 

@@ -8,6 +8,7 @@ from typing import Any
 import cases
 import numpy as np
 import pytest
+from case_movers import foreign_mover, rigid_mover
 from oracles import root, triangles_intersect
 from oracles_gaps import gap_at, places_at
 from oracles_mesh import mesh_distance_squared
@@ -21,21 +22,6 @@ from screw_random import KINDS, Kind, random_pair
 WORDS = {"contact": "contact", "none": "separated", "initial": "overlap_at_start"}
 
 
-def mover(record: dict[str, Any]) -> Mover:
-    """Return a body of the rigid cases."""
-    mesh = cases.rigid_meshes()[record["mesh"]]
-    vertices = np.array(mesh["vertices"], dtype=np.float64) * record["scale"]
-    pose = np.array(record["R"], dtype=np.float64), record["t"]
-    return Mover(vertices, np.array(mesh["faces"]), *pose, record["V"], record["W"], record["K"])
-
-
-def third_party_mover(record: dict[str, Any]) -> Mover:
-    """Return a body of the third-party cases."""
-    pose = np.array(record["rotation0"]), record["translation0"]
-    motion = record["linear_velocity"], record["angular_velocity"], record["rotation_centre_world"]
-    return Mover(np.array(record["vertices"]), np.array(record["faces"]), *pose, *motion)
-
-
 def width(truth: Truth) -> float:
     assert truth.lo is not None
     assert truth.hi is not None
@@ -46,7 +32,7 @@ def width(truth: Truth) -> float:
 def test_rigid_case_has_its_certified_bracket(case: dict[str, Any]) -> None:
     duration, truth = float(case["T"]), case["truth"]
 
-    found = screw_first_contact(mover(case["A"]), mover(case["B"]), duration)
+    found = screw_first_contact(rigid_mover(case["A"]), rigid_mover(case["B"]), duration)
 
     if case["category"] == "grazing_exact":
         # An instant's contact at an irrational time: nothing after it proves it.
@@ -65,7 +51,7 @@ def test_rigid_case_has_its_certified_bracket(case: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("case", cases.third_party_ccd(), ids=lambda case: str(case["id"]))
 def test_third_party_case_has_its_time(case: dict[str, Any]) -> None:
-    bodies = [third_party_mover(case[key]) for key in ("body_a", "body_b")]
+    bodies = [foreign_mover(case[key]) for key in ("body_a", "body_b")]
 
     found = screw_first_contact(bodies[0], bodies[1], float(case["t_max"]))
 

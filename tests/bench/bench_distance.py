@@ -118,13 +118,4 @@ class SweptSpheres(peers.Coal):
 
     name = "coal OBBRSS"
 
-    def build(self, surface: Any) -> Any:
-        """Return a `BVHModelOBBRSS`."""
-        import coal
-
-        model = coal.BVHModelOBBRSS()
-        model.beginModel(len(surface.faces), len(surface.vertices))
-        model.addVertices(surface.vertices)
-        model.addTriangles(surface.faces)
-        model.endModel()
-        return model
+    model = "BVHModelOBBRSS"

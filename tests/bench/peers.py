@@ -154,11 +154,13 @@ class Coal:
 
     name = "coal"
 
+    model = "BVHModelOBB"
+
     def build(self, surface: Surface) -> Any:
-        """Return a `BVHModelOBB`."""
+        """Return such a model."""
         import coal
 
-        model = coal.BVHModelOBB()
+        model = getattr(coal, self.model)()
         model.beginModel(len(surface.faces), len(surface.vertices))
         model.addVertices(surface.vertices)
         model.addTriangles(surface.faces)

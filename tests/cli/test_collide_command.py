@@ -10,7 +10,7 @@ import sys
 from itertools import product
 
 import pytest
-from cube_files import all_pairs, cube, obj, stl
+from cube_files import all_pairs, as_input, cube, obj, stl
 
 from obbcli import Accuracy, __version__
 
@@ -50,11 +50,7 @@ def test_collide_document_holds_what_was_asked_and_answered(here, obbtree):
     assert list(document) == KEYS
     assert document["schema"] == "obbtree/collide/1"
     assert document["tool_version"] == __version__
-    assert document["inputs"]["a"] == {
-        "path": "cube.stl",
-        "sha256": hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest(),
-        "triangle_count": 12,
-    }
+    assert document["inputs"]["a"] == as_input(here / "cube.stl")
     assert document["motion"]["duration"] == 0.0
     assert document["motion"]["b"] == {
         "pose": {"rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "translation": [0, 0, 0]},

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import fields
 
 import pytest
-from cube_files import cube, obj
+from cube_files import as_input, cube, obj
 
 from obbcli import Accuracy, __version__
 
@@ -26,11 +25,7 @@ def test_distance_document_holds_what_was_asked_and_answered(here, obbtree):
     assert list(document) == KEYS
     assert document["schema"] == "obbtree/distance/1"
     assert document["tool_version"] == __version__
-    assert document["inputs"]["a"] == {
-        "path": "cube.stl",
-        "sha256": hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest(),
-        "triangle_count": 12,
-    }
+    assert document["inputs"]["a"] == as_input(here / "cube.stl")
     assert document["motion"]["duration"] == 0.0
     assert document["motion"]["b"]["pose"]["translation"] == [0.5, 0, 0]
     assert document["accuracy"] == Accuracy().as_dict()

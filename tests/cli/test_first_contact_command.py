@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
+from cube_files import as_input
 
 from obbcli import Accuracy, FirstContact
 
@@ -78,10 +78,7 @@ def test_first_contact_document_holds_what_was_asked_and_answered(here, obbtree)
     names = [field.name for field in fields(FirstContact) if field.name != "stats"]
     assert list(document) == KEYS
     assert document["schema"] == "obbtree/first-contact/1"
-    assert (
-        document["inputs"]["a"]["sha256"]
-        == hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest()
-    )
+    assert document["inputs"]["a"] == as_input(here / "cube.stl")
     assert document["motion"]["a"]["linear_velocity"] == [1.0, 0.0, 0.0]
     assert document["motion"]["duration"] == 1.0
     assert document["accuracy"] == Accuracy().as_dict()

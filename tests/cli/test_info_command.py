@@ -7,7 +7,7 @@ import json
 import math
 
 import pytest
-from cube_files import CUBE_FACES, cube, obj
+from cube_files import CUBE_FACES, as_input, cube, obj
 
 
 def test_info_of_a_mesh(here, obbtree):
@@ -15,11 +15,7 @@ def test_info_of_a_mesh(here, obbtree):
 
     assert list(document) == ["schema", "tool_version", "inputs", "result", "stats"]
     assert document["schema"] == "obbtree/info/1"
-    assert document["inputs"]["file"] == {
-        "path": "cube.stl",
-        "sha256": hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest(),
-        "triangle_count": 12,
-    }
+    assert document["inputs"]["file"] == as_input(here / "cube.stl")
     assert document["result"] == {
         "kind": "mesh",
         "triangle_count": 12,
