@@ -3,52 +3,16 @@
 from __future__ import annotations
 
 import base64
-import copy
 import json
 import struct
 
 import numpy as np
 import pytest
 import trimesh
+from gltf_files import DOCUMENT, INDICES, POSITIONS, SQUARE, document, load
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-
-SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
-POSITIONS = struct.pack("<12f", *np.ravel(SQUARE))
-INDICES = struct.pack("<6H", 0, 1, 2, 0, 2, 3)
-DOCUMENT = {
-    "asset": {"version": "2.0"},
-    "scene": 0,
-    "scenes": [{"nodes": [0]}],
-    "nodes": [{"mesh": 0}],
-    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-    "accessors": [
-        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
-        {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
-    ],
-    "bufferViews": [
-        {"buffer": 0, "byteOffset": 0, "byteLength": 48},
-        {"buffer": 0, "byteOffset": 48, "byteLength": 12},
-    ],
-    "buffers": [{"byteLength": 60}],
-}
-
-
-def document(**changes):
-    return copy.deepcopy(DOCUMENT) | changes
-
-
-def glb(content, body=POSITIONS + INDICES):
-    text = content if isinstance(content, bytes) else json.dumps(content).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<2I", len(text), 0x4E4F534A) + text
-    chunks += struct.pack("<2I", len(body), 0x004E4942) + body
-    return struct.pack("<3I", 0x46546C67, 2, 12 + len(chunks)) + chunks
-
-
-def load(content, body=POSITIONS + INDICES):
-    return load_mesh_bytes(glb(content, body), ".glb")
 
 
 def test_glb_loads():
@@ -214,99 +178,6 @@ def test_glb_scales_normalised_positions():
     body = bytes(value * 255 for row in SQUARE for value in map(int, row)) + INDICES
 
     assert load(content, body).vertices.tolist() == SQUARE
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "fault"),
-    [
-        (["asset"], None, "asset: is missing"),
-        (["scene"], 1, r"scenes: has no item 1 \(1 in all\)"),
-        (["scenes", 0, "nodes"], [5], r"nodes: has no item 5"),
-        (["scenes", 0, "nodes"], [0, 0], r"nodes\[0\]: is met twice"),
-        (["nodes", 0, "children"], [0], r"nodes\[0\]: is met twice"),
-        (["nodes", 0, "mesh"], -1, "meshes: has no item -1"),
-        (["nodes", 0, "matrix"], [1, 2], r"nodes\[0\]\.matrix: expected 16 finite numbers"),
-        (["nodes", 0, "rotation"], [0, 0, 0, 0], r"nodes\[0\]\.rotation: is zero"),
-        (["nodes", 0, "translation"], [1e999, 0, 0], "is not glTF|expected 3 finite numbers"),
-        (["meshes", 0, "primitives", 0, "attributes"], {}, r"primitives\[0\]: has no POSITION"),
-        (["meshes", 0, "primitives", 0, "indices"], 0, r"accessors\[0\]: is not of a known type"),
-        (["accessors", 0, "count"], 10**15, r"accessors\[0\]: takes \d+ bytes of bufferViews\[0\]"),
-        (["accessors", 0, "count"], -4, r"accessors\[0\]\.count: is -4"),
-        (["accessors", 0, "count"], 3, r"triangle 1 uses vertex 3 of 3"),
-        (["accessors", 0, "byteOffset"], 4, "takes 52 bytes"),
-        (["accessors", 0, "bufferView"], 9, "bufferViews: has no item 9"),
-        (["accessors", 1, "componentType"], 5122, "has indices of no unsigned type"),
-        (["accessors", 1, "count"], 5, "has 5 indices, not three a triangle"),
-        (["bufferViews", 0, "byteLength"], 100, r"bufferViews\[0\]: reaches to byte 100"),
-        (["bufferViews", 0, "byteStride"], 4, "stride 4"),
-        (["buffers", 0, "byteLength"], 100, r"buffers\[0\]: claims 100 bytes, but has 60"),
-        (["extensionsUsed"], ["KHR_draco_mesh_compression"], "draco_mesh_compression is not read"),
-    ],
-)
-def test_glb_refuses_what_is_out_of_place_and_names_it(path, value, fault):
-    content = document()
-    item = content
-    for key in path[:-1]:
-        item = item[key]
-    item[path[-1]] = value
-
-    with pytest.raises(MeshError, match=fault):
-        load(content)
-
-
-def test_glb_refuses_zeros_claimed_without_bytes():
-    content = document()
-    del content["accessors"][0]["bufferView"]
-    content["accessors"][0]["count"] = 10**12
-
-    with pytest.raises(MeshError, match=r"claims 1000000000000 values in 60 bytes"):
-        load(content)
-
-
-@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
-def test_glb_refuses_positions_that_are_not_finite(bad):
-    with pytest.raises(MeshError, match=rf"vertex 0: z is {bad}"):
-        load(DOCUMENT, struct.pack("<12f", 0, 0, bad, *np.ravel(SQUARE[1:])) + INDICES)
-
-
-@pytest.mark.parametrize(
-    ("position", "value", "fault"),
-    [
-        (4, 1, "byte 4: is GLB version 1"),
-        (8, 2**32 - 1, "byte 8: claims 4294967295 bytes"),
-        (12, 2**32 - 1, "byte 12: a chunk claims 4294967295 bytes"),
-        (16, 7, "has no JSON chunk"),
-    ],
-)
-def test_glb_refuses_headers_that_lie(position, value, fault):
-    data = bytearray(glb(DOCUMENT))
-    data[position : position + 4] = struct.pack("<I", value)
-
-    with pytest.raises(MeshError, match=fault):
-        load_mesh_bytes(bytes(data), ".glb")
-
-
-@pytest.mark.parametrize("text", [b"{", b"[]", b"null", b"[" * 100_000, b"\xff\xfe", b'{"a": NaN}'])
-def test_glb_refuses_json_that_is_no_document(text):
-    with pytest.raises(MeshError, match=r"is not glTF|this is no glTF document"):
-        load(text)
-
-
-def test_glb_refuses_every_truncation():
-    data = glb(DOCUMENT)
-
-    for size in range(1, len(data)):
-        with pytest.raises(MeshError):
-            load_mesh_bytes(data[:size], ".glb")
-
-
-def test_glb_takes_deep_chains_of_nodes():
-    depth = 5000
-    nodes = [{"children": [i + 1], "translation": [1, 0, 0]} for i in range(depth)]
-
-    mesh = load(document(nodes=[*nodes, {"mesh": 0}]))
-
-    assert mesh.vertices[0].tolist() == [depth, 0, 0]
 
 
 def test_glb_agrees_with_trimesh_on_a_file_it_wrote(tmp_path):
