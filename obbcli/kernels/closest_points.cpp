@@ -94,6 +94,20 @@ TriangleDistance measure_finely(const Triangle& a, const Triangle& b,
     return measured_in_order<Twofold>(a, b, features);
 }
 
+Vector3<Twofold> near_direction(const Triangle& a, const Triangle& b,
+                                const NearFeatures& features) {
+    const LocalPair<Twofold> pair = localized<Twofold>(a, b);
+    NearestPoints<Twofold> solver(pair);
+    solver.try_these(features);
+    const Nearest<Twofold>& nearest = solver.nearest();
+    if (nearest.features.kind == NearFeatures::Kind::kNone) {
+        return {};
+    }
+    const Vector3<Twofold> n = solver.direction();
+    const bool is_forward = dot(n, nearest.q - nearest.p) >= Twofold(0.0);
+    return rescaled(is_forward ? n : -n, -exponent_of(norm_inf(nearest_double(n))));
+}
+
 Vec3 common_point(const Triangle& a, const Triangle& b) {
     if (precedes(b, a)) {
         return common_point(b, a);

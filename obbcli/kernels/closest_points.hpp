@@ -3,6 +3,7 @@
 #pragma once
 
 #include "triangle.hpp"
+#include "twofold.hpp"
 #include "vec.hpp"
 
 #include <cstdint>
@@ -38,6 +39,11 @@ struct TriangleDistance {
 // long as that exceeds about 2^-45 of the pair's extent and no angle is below about 1e-12. The
 // features are where to look first, as measure() found them.
 [[nodiscard]] TriangleDistance measure_finely(const Triangle& a, const Triangle& b,
+                                              const NearFeatures& features);
+
+// About the direction from A to B in which they are nearest, as measure() found it, with twice the
+// digits and a largest entry of about 1; 0 where they do not tell.
+[[nodiscard]] Vector3<Twofold> near_direction(const Triangle& a, const Triangle& b,
                                               const NearFeatures& features);
 
 // A point of two triangles that intersect, rounded to double.

@@ -123,6 +123,9 @@ void DistanceQuery::visit(const Pair& pair) {
         refine(pair);
         return;
     }
+    if (may_tie(pair) && is_proven_tie(pair)) {
+        return;
+    }
     const Next how = next(pair);
     if (how == Next::kMeasure) {
         measure_all(pair);
@@ -225,13 +228,16 @@ double DistanceQuery::bound(const Side& a, const Side& b) {
     return shrink_ * std::sqrt(square);
 }
 
-bool DistanceQuery::is_settled(double key) const {
-    double slack = kSettled * high_;
-    if (counts_.exact_triangle_tests > kManyTies) {
-        slack = std::max(slack, std::min(kSettledOfMany, 0x1p-20 * high_));
-    }
-    return !is_diving() && high_ - key <= std::max(tolerance_, slack);
+bool DistanceQuery::is_settled(double key) const { return !is_diving() && high_ - key <= slack(); }
+
+double DistanceQuery::slack() const {
+    const double share = kSettled * high_;
+    return std::max(tolerance_, has_many_ties()
+                                    ? std::max(share, std::min(kSettledOfMany, 0x1p-20 * high_))
+                                    : share);
 }
+
+bool DistanceQuery::has_many_ties() const { return counts_.exact_triangle_tests > kManyTies; }
 
 void DistanceQuery::add(const Pair& pair) {
     if (is_settled(pair.key)) {

@@ -70,6 +70,14 @@ class DistanceQuery {
         NodeRef a, b;
         NearFeatures features; // where two triangles were measured: only more digits tell more
     };
+    // Where the least distance was found.
+    struct Incumbent {
+        NodeRef a, b;
+        NearFeatures features;
+        bool is_fine;               // whether the direction is known
+        Vector3<Twofold> direction; // from A to B
+    };
+    static constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
     // A node as the tests see it: its box, or the triangle that needs none.
     struct Side {
         NodeRef ref;
@@ -111,6 +119,16 @@ class DistanceQuery {
 
     // Whether a lower bound is as good as the least distance found.
     [[nodiscard]] bool is_settled(double key) const;
+    [[nodiscard]] double slack() const; // of the least distance
+    [[nodiscard]] bool has_many_ties() const;
+
+    // Faces along each other, of which boxes cannot tell whether any two are nearer than the rest:
+    // all vertices of both nodes are looked at, along the direction that the least distance has.
+    [[nodiscard]] bool may_tie(const Pair& pair) const;
+    [[nodiscard]] bool is_proven_tie(const Pair& pair);
+    void refine_incumbent();
+    [[nodiscard]] bool are_boxes_apart(const Pair& pair) const;
+    [[nodiscard]] double all_apart(const Pair& pair) const;
     void settle(double key) { low_ = std::min(low_, key); }
     void add(const Pair& pair);
     [[nodiscard]] Triangle in_unit(const Triangle& t) const;
@@ -133,6 +151,9 @@ class DistanceQuery {
     double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points
     DistanceBounds best_{};
+    Incumbent incumbent_{};
+    // How many triangles may be looked at for a tie; before there are many, and from then on.
+    std::array<std::uint32_t, 2> tie_limits_{kAnyNumber, kAnyNumber};
     DistanceQueryCounts counts_;
 };
 

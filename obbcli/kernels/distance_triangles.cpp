@@ -143,6 +143,7 @@ void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const 
     if (high < high_ || (high == high_ && ids(one) < ids(best_))) {
         high_ = high;
         best_ = one;
+        incumbent_ = {a, b, found.features, false, {}};
     }
 }
 

@@ -133,6 +133,24 @@ class NearestPoints {
         return rounded(length - low) <= 32 * kUnit * (rounded(length) + extent_);
     }
 
+    // Where the points are close together their difference is mostly noise; the directions of the
+    // features they lie in are not.
+    [[nodiscard]] Vector3<Real> direction() const {
+        const NearFeatures& f = best_.features;
+        if (f.kind != NearFeatures::Kind::kEdges) {
+            return normal_of(f.kind == NearFeatures::Kind::kFaceOfA ? edges_a_ : edges_b_);
+        }
+        const Vector3<Real>&d = edges_a_[f.part_a], &e = edges_b_[f.part_b];
+        if (best_.inside_a && best_.inside_b) {
+            return product(d, e);
+        }
+        const Vector3<Real> v = best_.q - best_.p;
+        if (best_.inside_a) {
+            return v - (dot(v, d) / dot(d, d)) * d;
+        }
+        return best_.inside_b ? v - (dot(v, e) / dot(e, e)) * e : v;
+    }
+
   private:
     static constexpr double kUnit = kRoundoff<Real>;
 
@@ -224,24 +242,6 @@ class NearestPoints {
         if (best_.features.kind == NearFeatures::Kind::kNone || candidate.square < best_.square) {
             best_ = candidate;
         }
-    }
-
-    // Where the points are close together their difference is mostly noise; the directions of the
-    // features they lie in are not.
-    [[nodiscard]] Vector3<Real> direction() const {
-        const NearFeatures& f = best_.features;
-        if (f.kind != NearFeatures::Kind::kEdges) {
-            return normal_of(f.kind == NearFeatures::Kind::kFaceOfA ? edges_a_ : edges_b_);
-        }
-        const Vector3<Real>&d = edges_a_[f.part_a], &e = edges_b_[f.part_b];
-        if (best_.inside_a && best_.inside_b) {
-            return product(d, e);
-        }
-        const Vector3<Real> v = best_.q - best_.p;
-        if (best_.inside_a) {
-            return v - (dot(v, d) / dot(d, d)) * d;
-        }
-        return best_.inside_b ? v - (dot(v, e) / dot(e, e)) * e : v;
     }
 
     // With n any vector whatever, the triangles are at least (min n.b - max n.a) / |n| apart, or
