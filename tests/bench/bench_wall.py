@@ -49,6 +49,12 @@ rest = coal.Transform3s()
 result = coal.CollisionResult()
 sys.exit(coal.collide(models[0], rest, models[1], rest, coal.CollisionRequest(), result) > 0)
 """
+PYVISTA = """
+import sys
+import pyvista
+a, b = map(pyvista.read, sys.argv[1:])
+sys.exit(a.collision(b, contact_mode=1)[1])
+"""
 
 
 def run(quick: bool) -> Iterator[Row]:
@@ -66,6 +72,7 @@ def run(quick: bool) -> Iterator[Row]:
                     OURS: [command, "collide", "--exit-code", *paths],
                     "trimesh + python-fcl": [python, "-c", TRIMESH_FCL, *paths],
                     "numpy + coal": [python, "-c", NUMPY_COAL, *paths],
+                    "pyvista": [python, "-c", PYVISTA, *paths],
                     "import numpy": [python, "-c", f"import numpy, sys; sys.exit({pair.touches})"],
                 }
                 calls = {

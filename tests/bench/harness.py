@@ -22,7 +22,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 OURS = "obbtree"
-PACKAGES = ("obbtree", "numpy", "python-fcl", "coal", "ipctk", "trimesh", "meshio")
+PACKAGES = (
+    "obbtree",
+    "numpy",
+    "python-fcl",
+    "coal",
+    "ipctk",
+    "vtk",
+    "pyvista",
+    "trimesh",
+    "meshio",
+)
 
 
 @dataclass(frozen=True)
