@@ -40,6 +40,11 @@ inline constexpr std::size_t kAlignment<Four> = sizeof(Four);
 
 [[nodiscard]] inline bool is_none(bool mask) { return !mask; }
 [[nodiscard]] inline bool is_none(PackMask mask) { return (mask[0] | mask[1]) == 0; }
+// A bit for each lane that is set.
+[[nodiscard]] inline unsigned bits_of(FourMask mask) {
+    const FourMask bits = mask & FourMask{1, 2, 4, 8};
+    return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+}
 [[nodiscard]] inline bool is_none(FourMask mask) {
     return (mask[0] | mask[1] | mask[2] | mask[3]) == 0;
 }

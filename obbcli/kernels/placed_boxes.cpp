@@ -50,12 +50,7 @@ OBB_WIDE unsigned meeting_pairs(const LaneFrame& frame, const FourNodes& nodes,
         shuffled(boxes, [](Four v) { return __builtin_shuffle(v, FourMask{0, 0, 1, 1}); });
     const auto b =
         shuffled(boxes, [](Four v) { return __builtin_shuffle(v, FourMask{2, 3, 2, 3}); });
-    const FourMask apart = are_separated(a, b, bound);
-    unsigned meeting = 0;
-    for (unsigned k = 0; k < 4; ++k) {
-        meeting |= apart[k] == 0 ? 1U << k : 0U;
-    }
-    return meeting;
+    return bits_of(~are_separated(a, b, bound));
 }
 
 } // namespace obb

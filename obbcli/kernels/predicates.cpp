@@ -16,26 +16,12 @@
 namespace obb {
 namespace {
 
-// Which vertices of a triangle are surely above and surely below another's plane, a bit each.
-struct Sides {
-    unsigned above = 0;
-    unsigned below = 0;
-
-    [[nodiscard]] bool all_same() const { return above == 7 || below == 7; }
-    [[nodiscard]] bool all_sure() const { return (above | below) == 7; }
-    // Of sure sides that differ, the vertex that stands alone and whether it is below.
-    [[nodiscard]] bool lone_is_below() const { return std::has_single_bit(below); }
-    [[nodiscard]] std::size_t lone() const {
-        return static_cast<std::size_t>(std::countr_zero(lone_is_below() ? below : above));
-    }
-};
-
-[[nodiscard]] Sides sides(const Triangle& plane, const Triangle& other) {
+[[nodiscard]] PlaneSides sides(const Triangle& plane, const Triangle& other) {
     const Vec3 u = plane[1] - plane[0];
     const Vec3 v = plane[2] - plane[0];
     const Vec3 normal = cross(u, v);
     const double sizes = norm_1(u) * norm_1(v);
-    Sides result;
+    PlaneSides result;
     for (unsigned k = 0; k < 3; ++k) {
         const Vec3 w = other[k] - plane[0];
         const double error = triple_error(sizes, reach(w));
@@ -64,7 +50,8 @@ struct Sides {
 // Guigue and Devillers 2003, Fast and robust triangle-triangle overlap test using orientation
 // predicates, with signs that must all be sure.
 [[nodiscard]] std::optional<bool> traces_overlap(const Triangle& a, const Triangle& b,
-                                                 const Sides& sides_a, const Sides& sides_b) {
+                                                 const PlaneSides& sides_a,
+                                                 const PlaneSides& sides_b) {
     const std::size_t i = sides_a.lone();
     const std::size_t j = sides_b.lone();
     // Turn either triangle over so that each lone vertex is above the other's plane.
@@ -151,14 +138,19 @@ struct Sides {
 } // namespace
 
 TriangleVerdict test_triangles(const Triangle& a, const Triangle& b) {
-    const Sides sides_b = sides(a, b);
+    const PlaneSides sides_b = sides(a, b);
     if (sides_b.all_same()) {
         return {false, false};
     }
-    const Sides sides_a = sides(b, a);
+    const PlaneSides sides_a = sides(b, a);
     if (sides_a.all_same()) {
         return {false, false};
     }
+    return test_triangles(a, b, sides_a, sides_b);
+}
+
+TriangleVerdict test_triangles(const Triangle& a, const Triangle& b, const PlaneSides& sides_a,
+                               const PlaneSides& sides_b) {
     if (sides_a.all_sure() && sides_b.all_sure()) {
         if (const std::optional<bool> overlap = traces_overlap(a, b, sides_a, sides_b)) {
             return {*overlap, false};

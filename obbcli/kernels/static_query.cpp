@@ -1,7 +1,6 @@
 #include "static_query.hpp"
 
 #include "query_frame.hpp"
-#include "scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,61 +16,9 @@ constexpr double kAlike = 0.5;
 
 } // namespace
 
-void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
-    matrix_ = matrix;
-    offset_ = offset;
-    is_moved_ = !(matrix == Mat3::identity() && offset == Vec3{0, 0, 0});
-    scale_ = power_of_two(tree_->scale_exponent - exponent);
-    const int half = -exponent / 2;
-    vertex_scales_ = {power_of_two(half), power_of_two(-exponent - half)};
-}
-
-template <typename Real>
-BasicObb<Real> PosedTree::in_frame(BasicObb<Real> box) const {
-    const auto turned = [&](Vector3<Real> v) {
-        const auto& m = matrix_.rows;
-        return Vector3<Real>{m[0].x * v.x + m[0].y * v.y + m[0].z * v.z,
-                             m[1].x * v.x + m[1].y * v.y + m[1].z * v.z,
-                             m[2].x * v.x + m[2].y * v.y + m[2].z * v.z};
-    };
-    const auto scaled_by = [&](Vector3<Real> v) {
-        return Vector3<Real>{scale_ * v.x, scale_ * v.y, scale_ * v.z};
-    };
-    box.center = scaled_by(box.center);
-    box.half_extents = scaled_by(box.half_extents);
-    if (is_moved_) {
-        const Vector3<Real> c = turned(box.center);
-        box.center = {c.x + offset_.x, c.y + offset_.y, c.z + offset_.z};
-        for (Vector3<Real>& axis : box.axes) {
-            axis = turned(axis);
-        }
-    }
-    return box;
-}
-
-Obb PosedTree::box(const Node& node) const {
-    return in_frame(Obb{node.center, axes_of(node.rotation), half_extents_of(node)});
-}
-
-Triangle PosedTree::triangle_in_frame(const NodeRef& ref) const {
-    Triangle t = tree_->triangle(ref.begin);
-    for (Vec3& v : t) {
-        v = vertex_scales_[1] * (vertex_scales_[0] * v);
-        v = is_moved_ ? matrix_ * v + offset_ : v;
-    }
-    return t;
-}
-
-Triangle PosedTree::triangle(const NodeRef& ref) const {
-    const Triangle t = tree_->triangle(ref.begin);
-    return pose_.is_identity() ? t : posed(pose_, t);
-}
-
-std::uint32_t PosedTree::id(const NodeRef& ref) const { return tree_->triangle_ids[ref.begin]; }
-
 StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& b,
                          const Pose& pose_b, const StaticQueryOptions& options)
-    : a_(a, pose_a), b_(b, pose_b), options_(options) {
+    : a_(a, pose_a), b_(b, pose_b), options_(options), tests_crowds_(tests_crowds(options)) {
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     exponent_ = frame.exponent;
@@ -203,12 +150,13 @@ void StaticQuery::open(const Pair& pair, bool opens_a, bool opens_b) {
                 ++counts_.box_tests;
             }
             if (meets) {
-                near[count++] = {norm_1(middles[i] - middles[2 + j]), i, j};
+                near[count++] = {tests_crowds_ ? 0 : norm_1(middles[i] - middles[2 + j]), i, j};
             }
         }
     }
-    // Farthest first; the order of equal ones is that of the children.
-    for (std::size_t k = 1; k < count; ++k) {
+    // Farthest first; the order of equal ones is that of the children. Where every pair is wanted,
+    // none is urgent.
+    for (std::size_t k = 1; k < count && !tests_crowds_; ++k) {
         for (std::size_t m = k; m > 0 && near[m - 1].distance < near[m].distance; --m) {
             std::swap(near[m - 1], near[m]);
         }

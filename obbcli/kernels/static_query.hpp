@@ -2,8 +2,8 @@
 #pragma once
 
 #include "placed_boxes.hpp"
-#include "pose.hpp"
-#include "tree.hpp"
+#include "posed_tree.hpp"
+#include "predicates.hpp"
 
 #include <array>
 #include <cstdint>
@@ -35,39 +35,6 @@ struct StaticQueryCounts {
     std::uint64_t triangle_tests = 0;
     std::uint64_t exact_triangle_tests = 0;
     std::uint64_t pops = 0;
-};
-
-// One body of a query: boxes in the query's frame for pruning, posed triangles for verdicts.
-class PosedTree {
-  public:
-    PosedTree(const TreeView& tree, const Pose& pose) : tree_(&tree), pose_(pose) {}
-
-    // The frame in which boxes are tested: x -> matrix * (x * 2^-exponent) + offset.
-    void set_frame(const Mat3& matrix, Vec3 offset, int exponent);
-
-    [[nodiscard]] const TreeView& tree() const { return *tree_; }
-    [[nodiscard]] const Pose& pose() const { return pose_; }
-    [[nodiscard]] const Mat3& matrix() const { return matrix_; }
-    [[nodiscard]] Vec3 offset() const { return offset_; }
-    // The nodes' unit in the frame's.
-    [[nodiscard]] double node_scale() const { return scale_; }
-    [[nodiscard]] Obb box(const Node& node) const;
-    [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
-    [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
-    [[nodiscard]] std::uint32_t id(const NodeRef& ref) const;
-
-  private:
-    const TreeView* tree_;
-    Pose pose_;
-    Mat3 matrix_ = Mat3::identity();
-    Vec3 offset_{0, 0, 0};
-    bool is_moved_ = false;
-    template <typename Real>
-    [[nodiscard]] BasicObb<Real> in_frame(BasicObb<Real> box) const;
-
-    // Nodes are in the tree's unit; vertices in mesh units need two factors, as one may overflow.
-    double scale_ = 1;
-    std::array<double, 2> vertex_scales_{1, 1};
 };
 
 // The query as an object: advanced by so many pops at a time, so that callers can look at the clock
@@ -118,9 +85,10 @@ class StaticQuery {
     void open_leaf(bool opens_a);
     [[nodiscard]] bool may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
                                 const Triangle& b);
-    bool keep_if_intersecting(const NodeRef& ref_a, const Triangle& a, const NodeRef& ref_b,
-                              const Triangle& b);
+    bool keep_if_intersecting(const NodeRef& ref_a, const NodeRef& ref_b,
+                              const TriangleVerdict& verdict);
     void meet(const Pair& pair);
+    [[nodiscard]] static bool tests_crowds(const StaticQueryOptions& options);
     [[nodiscard]] bool is_crowd(const Pair& pair) const;
     void meet_all(const Pair& pair);
     [[nodiscard]] double distance_bound(const Pair& pair) const;
@@ -128,6 +96,7 @@ class StaticQuery {
 
     PosedTree a_, b_;
     StaticQueryOptions options_;
+    bool tests_crowds_;
     RoundingBound bound_{};
     int exponent_ = 0;
     LaneFrame frame_{};

@@ -110,12 +110,16 @@ struct TreeView {
         return {position, position + 1, leaf.slot, leaf.depth};
     }
 
-    [[nodiscard]] Triangle triangle(std::uint32_t position) const {
+    [[nodiscard]] std::array<const Vec3*, 3> corners_of(std::uint32_t position) const {
         const Corners& c = corners[position];
         if (c[0] >= vertices.size() || c[1] >= vertices.size() || c[2] >= vertices.size()) {
             throw TreeError("a triangle uses a vertex that is not there");
         }
-        return {vertices[c[0]], vertices[c[1]], vertices[c[2]]};
+        return {&vertices[c[0]], &vertices[c[1]], &vertices[c[2]]};
+    }
+    [[nodiscard]] Triangle triangle(std::uint32_t position) const {
+        const auto [p, q, r] = corners_of(position);
+        return {*p, *q, *r};
     }
 };
 
