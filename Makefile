@@ -40,7 +40,8 @@ help:
 
 OBBTREE := $(BIN)/obbtree
 
-# Gears in mesh and pushed together, linked chain links, a nut on its bolt and pulled against the thread.
+# Gears in mesh and pushed together, linked chain links, a nut on its bolt and pulled against the thread;
+# then all of them moving.
 demo: .venv/installed
 	@mkdir -p .build/demo
 	$(OBBTREE) info $(SAMPLES)/gear.stl
@@ -51,6 +52,7 @@ demo: .venv/installed
 	$(OBBTREE) info .build/demo/bolt.obbt --check
 	$(OBBTREE) collide .build/demo/bolt.obbt .build/demo/nut.obbt
 	$(OBBTREE) collide .build/demo/bolt.obbt $(SAMPLES)/nut.obj --translate-b 0 0 1
+	$(OBBTREE) scene $(SAMPLES)/cell.toml
 
 test: .venv/installed
 	$(BIN)/python -m pytest $(PYTEST_ARGS)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from obbcli.pairs import contacts
     from obbcli.query import collide, triangle_pairs
     from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
+    from obbcli.scene import Scene, SceneBody, SceneContact
     from obbcli.tree import ObbTree
 
 # A literal, because asking the installed metadata costs three times a bare interpreter's start.
@@ -46,6 +47,9 @@ _HOMES = {
     "Pose": "motion",
     "Query": "contact",
     "QueryStats": "verdict",
+    "Scene": "scene",
+    "SceneBody": "scene",
+    "SceneContact": "scene",
     "SceneError": "errors",
     "Status": "verdict",
     "TreeFileError": "errors",
@@ -74,6 +78,9 @@ __all__ = [
     "Pose",
     "Query",
     "QueryStats",
+    "Scene",
+    "SceneBody",
+    "SceneContact",
     "SceneError",
     "Status",
     "TreeFileError",

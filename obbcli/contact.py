@@ -5,6 +5,7 @@ A `Query` goes on where it stopped; `first_contact` runs one to its end.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from functools import partial
@@ -97,6 +98,7 @@ class Query:
         self._legs = self._relay(partial(Query, any_contact=any_contact))
         self._any_contact = any_contact
         self._is_finished = False
+        self._spent = 0
 
     def _relay(self, ask: Asker) -> Relay | None:
         """Return what asks one question after another, where one is not enough."""
@@ -133,12 +135,21 @@ class Query:
         return self.lower_bound if self._legs is None else self._legs.time
 
     @property
+    def iterations(self) -> int:
+        """What `advance` has taken of `max_iterations`: queue pops, and one for steps of none."""
+        return self._spent
+
+    @property
     def duration(self) -> float:
         """The end of the interval asked about, s."""
         return self._duration
 
     def advance(
-        self, max_iterations: int | None = None, seconds: float | None = None
+        self,
+        max_iterations: int | None = None,
+        seconds: float | None = None,
+        *,
+        until: float = math.inf,
     ) -> FirstContact:
         """Go on for so many queue pops or seconds, and return what is known then.
 
@@ -149,6 +160,8 @@ class Query:
         Args:
             max_iterations: queue pops. None: no limit.
             seconds: wall time. None: no limit.
+            until: s; no further than that contact is ruled out up to a later time (of sampled
+                motion: than the steps that begin by then).
 
         Raises:
             MotionError: positions leave the range of double, or sampled steps turn by more than
@@ -159,12 +172,14 @@ class Query:
         stop = None if seconds is None else start + seconds
         left = max_iterations
         try:
-            while not self._is_finished:
+            while not self._is_finished and self.time <= until:
                 pops = POPS_A_SLICE if left is None else min(left, POPS_A_SLICE)
-                before = self._counts()[3]
-                self._is_finished = self._step(pops)
+                before = self.counts[3]
+                self._is_finished = self._step(pops, until)
+                spent = max(self.counts[3] - before, 1)
+                self._spent += spent
                 if left is not None:
-                    left = max(left - max(self._counts()[3] - before, 1), 0)
+                    left = max(left - spent, 0)
                 if left == 0 or (stop is not None and time.perf_counter() >= stop):
                     break
         except kernels.TreeError as fault:
@@ -173,7 +188,7 @@ class Query:
             self._seconds["query"] += time.perf_counter() - start
         return self._answer()
 
-    def _step(self, pops: int) -> bool:
+    def _step(self, pops: int, until: float) -> bool:
         """Advance the question at t = 0, then the moving one; return whether all is answered."""
         if self._solids is not None:
             if not self._solids.advance(pops):
@@ -181,14 +196,16 @@ class Query:
             if self._solids.contained is not None:
                 return True
         if self._legs is not None:
-            return self._legs.step(pops)
+            return self._legs.step(pops, until)
         if self._moving is None:
+            before = self._at_start.counts()[3]
             if not self._at_start.advance(pops):
                 return False
             if self._at_start.is_contact or self._is_over_at_start():
                 return True
             self._moving = self._moving_query()
-        return self._moving.advance(pops)
+            pops -= self._at_start.counts()[3] - before
+        return self._moving.advance(pops, until)
 
     def _is_over_at_start(self) -> bool:
         """Return whether what holds at t = 0 holds throughout."""
@@ -234,7 +251,8 @@ class Query:
             return boxes_at_start(self._at_start.error_bound)
         return contact_of(query, found, self._accuracy.clearance)
 
-    def _counts(self) -> Counts:
+    @property
+    def counts(self) -> Counts:
         """Box tests, triangle tests, exact ones and pops so far."""
         counts = self._at_start.counts()
         if self._solids is not None:
@@ -244,7 +262,7 @@ class Query:
         return counts if self._moving is None else sum_of(counts, self._moving.counts())
 
     def _stats(self) -> QueryStats:
-        return stats_of(self._trees, self._counts(), dict(self._seconds))
+        return stats_of(self._trees, self.counts, dict(self._seconds))
 
 
 def first_contact(

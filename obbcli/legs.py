@@ -139,6 +139,10 @@ class LegQueries(Relay):
             return self._clock(self._query.lower_bound, up=False)
         return self._duration if known.time is None else known.time
 
+    def _until(self, time: float) -> float:
+        # What is near is known to be at a time before.
+        return super()._until(time) if self._near is None else math.inf
+
     def _conclude(self, found: FirstContact) -> FirstContact | None:
         """Return the answer after that of the present question, or ask the next one."""
         if found.status is Status.UNRESOLVED:

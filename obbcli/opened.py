@@ -104,6 +104,10 @@ class OpenedTree:
         """How many bytes of the data were read so far."""
         return self._file.loaded_bytes
 
+    def loaded_counts(self) -> tuple[int, int]:
+        """Return how many triangles and boxes were read so far."""
+        return self._file.loaded_counts()
+
     @property
     def fault(self) -> str:
         """What was found wrong last; empty where nothing was."""

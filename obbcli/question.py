@@ -15,14 +15,14 @@ from obbcli.tree import ObbTree, load_tree
 from obbcli.verdict import QueryStats
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
-    from obbcli.motion import Body, Shape
+    from obbcli.motion import Body, Shape, Surface
 
 _NO_DEPTH_LIMIT = 2**32 - 1
 # Of the duration: the width asked of a bracket where the caller asks for none.
@@ -62,19 +62,18 @@ def _tree(shape: Shape) -> ObbTree:
     )
 
 
-def duration_of(duration: float | None, bodies: tuple[Body, Body]) -> float:
+def duration_of(duration: float | None, bodies: Sequence[Body]) -> float:
     """Return the end of the interval asked about, s.
 
-    By default 0 where both bodies rest, the last time of a motion through poses, or else 1.
+    By default 0 where all bodies rest, the last time of a motion through poses, or else 1.
 
     Raises:
         MotionError: not a finite number of at least 0.
     """
     if duration is None:
-        a, b = bodies
-        if a.motion.is_at_rest and b.motion.is_at_rest:
-            return 0.0
         motions = [body.motion for body in bodies if not body.motion.is_at_rest]
+        if not motions:
+            return 0.0
         paths = [float(m.times[-1]) for m in motions if isinstance(m, PathMotion)]
         return max(paths, default=1.0)
     try:
@@ -100,7 +99,7 @@ def box_limits(accuracy: Accuracy) -> tuple[bool, int, int]:
     )
 
 
-def pivot_of(body: Body, tree: ObbTree) -> NDArray[np.float64]:
+def pivot_of(body: Body, tree: Surface) -> NDArray[np.float64]:
     """Return where a body's axis passes at t = 0, world coordinates, (3,)."""
     if body.motion.pivot is not None:
         return body.motion.pivot

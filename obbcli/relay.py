@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     Asker = Callable[[Body, Body, float, Accuracy], Query]
 
 Counts = tuple[int, int, int, int]
+_ROUNDING = 2.0**-50
 
 
 class Leg(NamedTuple):
@@ -111,9 +112,12 @@ class Relay(ABC):
             return self._unresolved(stats)
         return replace(self._answer, stats=stats)
 
-    def step(self, pops: int) -> bool:
-        """Take at most so many pairs from the queue; true when the answer is complete."""
-        found = self._query.advance(pops)
+    def step(self, pops: int, until: float) -> bool:
+        """Take at most so many pairs from the queue, and none of later than `until`, s.
+
+        True when the answer is complete.
+        """
+        found = self._query.advance(pops, until=self._until(until))
         stats = found.stats
         self._present = (
             stats.box_tests,
@@ -124,6 +128,14 @@ class Relay(ABC):
         if self._query.is_finished:
             self._answer = self._conclude(found)
         return self._answer is not None
+
+    def _until(self, time: float) -> float:
+        """Return how far the present question is to be asked for a time of the whole, s.
+
+        Whenever it has come that far, `self.time` must be later than `time`.
+        """
+        # What the difference is off by, and the sum that makes a time of the whole again.
+        return time - self._leg.start + _ROUNDING * time
 
     def _go_on(self, leg: Leg, ask: Callable[[Leg], Query]) -> None:
         self._done = sum_of(self._done, self._present)

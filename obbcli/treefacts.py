@@ -183,6 +183,13 @@ class TreeFacts:
         """Return `node_count` and `possible_node_count`."""
         return self.kernel.node_count, self.kernel.possible_node_count
 
+    def loaded_counts(self) -> tuple[int, int]:
+        """Return how many triangles and boxes are at hand: made, or read from a tree file."""
+        made = self._made
+        if isinstance(made, (Growth, treefile.TreeArrays)):
+            return self.triangle_count, self.node_count
+        return made.loaded_counts()
+
     @cached_property
     def levels(self) -> tuple[Level, ...]:
         """What stands at each depth, the root's first; nodes not reached yet are made first."""

@@ -14,6 +14,7 @@ _COMMANDS = {
     "collide": "collide",
     "first-contact": "first_contact",
     "distance": "distance",
+    "scene": "scene",
     "build": "build",
     "info": "info",
 }
@@ -25,6 +26,7 @@ obbtree: do these two triangle meshes touch, and when first?
   obbtree first-contact gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -6
                                          when and where do they first touch?
   obbtree distance gear.stl shaft.obj    how far apart are they, and where?
+  obbtree scene cell.toml                the same of many bodies, earliest first
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 

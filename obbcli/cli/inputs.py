@@ -121,7 +121,7 @@ def read_shape(
     from obbcli.tree import ObbTree
 
     if name == STDIN:
-        return _from_bytes(_read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
+        return _from_bytes(read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
     path = Path(name)
     check_file(path)
     if path.is_fifo():
@@ -162,7 +162,7 @@ def _is_tree(path: Path) -> bool:
         return False
 
 
-def _read_stdin() -> bytes:
+def read_stdin() -> bytes:
     """Return all of standard input.
 
     Raises:

@@ -32,6 +32,7 @@ from obbcli.kernels._core import (
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
+    swept_pairs,
     triangle_pairs,
 )
 
@@ -66,5 +67,6 @@ __all__ = [
     "first_triangles_of_parts",
     "primitive_first_contacts",
     "primitive_intersects",
+    "swept_pairs",
     "triangle_pairs",
 ]

@@ -27,4 +27,5 @@ NB_MODULE(_core, m) {
     bind_containment(m);
     bind_primitives(m);
     bind_distance(m);
+    bind_swept_pairs(m);
 }

@@ -8,6 +8,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -79,6 +80,7 @@ void bind_contact_query(nb::module_& m) {
             "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "any_contact"_a, "each_pair"_a,
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
         .def("advance", &obb::ContactQuery::advance, "max_pops"_a,
+             "until"_a = std::numeric_limits<double>::infinity(),
              nb::call_guard<nb::gil_scoped_release>())
         .def_prop_ro("lower_bound", &obb::ContactQuery::lower_bound)
         .def_prop_ro("has_given_up", &obb::ContactQuery::has_given_up)

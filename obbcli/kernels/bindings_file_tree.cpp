@@ -4,6 +4,7 @@
 #include "crc32.hpp"
 #include "file_tree.hpp"
 
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
@@ -100,5 +101,6 @@ void bind_file_tree(nb::module_& m) {
         .def("triangle_ids", &ids_of)
         .def("triangle", &triangle_of, "position"_a)
         .def_prop_ro("loaded_bytes", &obb::FileTree::loaded_bytes)
+        .def("loaded_counts", &obb::FileTree::loaded_counts)
         .def_prop_ro("fault", &obb::FileTree::fault);
 }

@@ -138,9 +138,9 @@ void ContactQuery::push(const Entry& entry) {
     queue_.push(entry, entry.time, entry.a.depth + entry.b.depth);
 }
 
-bool ContactQuery::advance(std::uint64_t max_pops) {
+bool ContactQuery::advance(std::uint64_t max_pops, double until) {
     for (; max_pops > 0; --max_pops) {
-        if (has_ended() || is_ready()) {
+        if (has_ended() || is_ready() || lower_bound() > until) {
             break;
         }
         const Entry entry = queue_.pop();

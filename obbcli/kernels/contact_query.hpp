@@ -72,9 +72,10 @@ class ContactQuery {
     ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& screw_a, const TreeView& b,
                  const Pose& pose_b, const Screw& screw_b, const ContactQueryOptions& options);
 
-    // Takes at most so many pairs from the queue; true when the answer is complete. With
-    // `each_pair` it also ends, and returns false, when a contact is ready to be taken.
-    bool advance(std::uint64_t max_pops);
+    // Takes at most so many pairs from the queue, and none once the lower bound exceeds `until`, s;
+    // true when the answer is complete. With `each_pair` it also ends, and returns false, when a
+    // contact is ready to be taken.
+    bool advance(std::uint64_t max_pops, double until = std::numeric_limits<double>::infinity());
 
     // With `each_pair`: the next contact in order of `low`, once no other can come before it.
     [[nodiscard]] std::optional<Contact> take();

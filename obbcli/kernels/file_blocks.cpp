@@ -26,10 +26,11 @@ FileBlocks::FileBlocks(Descriptor file, std::uint64_t start, std::size_t size,
     }
 }
 
-std::size_t FileBlocks::loaded_bytes() const {
+std::size_t FileBlocks::loaded_bytes(std::size_t begin, std::size_t end) const {
     std::size_t bytes = 0;
-    for (std::size_t block = 0; block < loaded_.size(); ++block) {
-        bytes += is_loaded(block) ? std::min(kBlockBytes, size() - block * kBlockBytes) : 0;
+    for (std::size_t block = begin / kBlockBytes; block * kBlockBytes < end; ++block) {
+        const std::size_t first = block * kBlockBytes, last = first + kBlockBytes;
+        bytes += is_loaded(block) ? std::min(last, end) - std::max(first, begin) : 0;
     }
     return bytes;
 }

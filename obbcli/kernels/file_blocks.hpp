@@ -52,7 +52,8 @@ class FileBlocks {
         }
     }
 
-    [[nodiscard]] std::size_t loaded_bytes() const;
+    // How many of the bytes from `begin` to `end` are ready.
+    [[nodiscard]] std::size_t loaded_bytes(std::size_t begin, std::size_t end) const;
 
   private:
     // Blocks of one group wait for each other, and neighbours among them are read at once.

@@ -53,6 +53,12 @@ void FileTree::load_all() {
     noting_faults([&] { blocks_.load(0, blocks_.size()); });
 }
 
+std::pair<std::size_t, std::size_t> FileTree::loaded_counts() const {
+    const std::size_t begin = layout_.corners_begin();
+    return {blocks_.loaded_bytes(begin, begin + view_.corners.size_bytes()) / sizeof(Corners),
+            blocks_.loaded_bytes(0, view_.nodes.size_bytes()) / sizeof(Node)};
+}
+
 std::span<const std::uint32_t> FileTree::load_ids() {
     const std::size_t begin = layout_.ids_begin();
     noting_faults([&] { blocks_.load(begin, begin + view_.triangle_ids.size_bytes()); });

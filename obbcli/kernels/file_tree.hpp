@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace obb {
@@ -49,7 +50,11 @@ class FileTree {
     // The corners of one triangle, in tree order.
     [[nodiscard]] Triangle load_triangle(std::uint32_t position);
 
-    [[nodiscard]] std::size_t loaded_bytes() const { return blocks_.loaded_bytes(); }
+    [[nodiscard]] std::size_t loaded_bytes() const {
+        return blocks_.loaded_bytes(0, blocks_.size());
+    }
+    // How many triangles and boxes were read.
+    [[nodiscard]] std::pair<std::size_t, std::size_t> loaded_counts() const;
 
     // What the first fault was, empty while there was none.
     [[nodiscard]] std::string fault() const;

@@ -111,7 +111,7 @@ def cost_rows(stats: Record) -> list[tuple[str, str]]:
     """Return the rows that say what a question cost."""
     return [
         ("box tests", count(stats["box_tests"])),
-        ("triangle tests", _triangle_tests(stats)),
+        ("triangle tests", triangle_tests(stats)),
         ("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"),
         ("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())),
     ]
@@ -137,7 +137,8 @@ def _reservation(record: Record) -> str:
     return f" of boxes: the surfaces are at most {length(result['error_bound'])} apart"
 
 
-def _triangle_tests(stats: Record) -> str:
+def triangle_tests(stats: Record) -> str:
+    """Return how many triangles were tested, and how many of them in exact arithmetic."""
     text = count(stats["triangle_tests"])
     exact = stats["exact_triangle_tests"]
     return f"{text} ({count(exact)} in exact arithmetic)" if exact else text

@@ -34,13 +34,14 @@ class Listing(NamedTuple):
 def contacts_part(listing: Listing) -> Record:
     """Return what a result says of a list."""
     return {
-        "contacts": [_contact_part(contact) for contact in listing.contacts],
+        "contacts": [contact_part(contact) for contact in listing.contacts],
         "contacts_complete": listing.is_complete,
         "contacts_unresolved_after": listing.unresolved_after,
     }
 
 
-def _contact_part(contact: Contact) -> Record:
+def contact_part(contact: Contact) -> Record:
+    """Return what a record says of a contact."""
     values = {field.name: getattr(contact, field.name) for field in fields(Contact)}
     return values | {"status": contact.status.value}
 

@@ -90,10 +90,11 @@ def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
     from obbcli.question import duration_of
 
     a, b = bodies
-    return {"duration": duration_of(duration, bodies), "a": _body_part(a), "b": _body_part(b)}
+    return {"duration": duration_of(duration, bodies), "a": body_part(a), "b": body_part(b)}
 
 
-def _body_part(body: Body) -> Record:
+def body_part(body: Body) -> Record:
+    """Return pose and motion as understood; the shape is a tree or a mesh."""
     from obbcli.motion import PathMotion
 
     pose, motion = body.pose, body.motion

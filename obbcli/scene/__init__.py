@@ -1,0 +1,13 @@
+"""Many moving bodies: every first contact between any two of them, in order of time.
+
+`files` reads scenes, `swept` bounds where bodies go, `candidates` says which may meet and not
+before when, and `earliest` refines just those, the earliest first.
+"""
+
+from __future__ import annotations
+
+from obbcli.scene.bodies import SceneBody
+from obbcli.scene.results import SceneContact
+from obbcli.scene.scene import Scene
+
+__all__ = ["Scene", "SceneBody", "SceneContact"]

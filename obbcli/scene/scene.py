@@ -1,0 +1,138 @@
+"""`Scene`: many moving bodies, and every first contact between two of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli.accuracy import Accuracy
+from obbcli.errors import SceneError
+from obbcli.question import duration_of, whole_limit
+from obbcli.scene.asked import Asked
+from obbcli.scene.bodies import as_bodies, as_ignored
+from obbcli.scene.earliest import FirstContacts
+from obbcli.scene.shapes import Shapes
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterable
+
+    from obbcli.scene.bodies import Bodies, Ignore, SceneBody
+    from obbcli.scene.listed import AllContacts
+
+
+class Scene:
+    """Many moving bodies.
+
+    What is answered about a pair is what `first_contact` answers with the scene's duration and
+    accuracy, bit for bit. What is not asked for is not done: files are read when a question first
+    needs them, each once, however many bodies are made of it; a tree file no further than questions
+    reach; pairs that keep apart cost no look at their trees.
+
+    Args:
+        bodies: a mapping of names to bodies, trees, meshes or paths; or `SceneBody` objects.
+        ignore: pairs not asked about: `{"bodies": [a, b]}`, `{"groups": [g]}` for all of one group
+            among themselves, `{"groups": [g, h]}` for those of one against those of the other.
+        duration: s; the closed interval [0, duration] is asked about. None: the last time of all
+            motions through poses, else 1 where anything moves, else 0.
+        accuracy: what is asked of each answer. `max_iterations` holds for a pair, `timeout` for all
+            together. None: the defaults.
+        verify: whether the checksums of tree files are compared.
+
+    Attributes:
+        bodies: the bodies, in order.
+        ignore: as given.
+        duration: s.
+        accuracy: as used.
+
+    Raises:
+        SceneError: no bodies, two of one name, or `ignore` names what is not there.
+        MotionError: the duration is negative or not finite, or a body is none.
+    """
+
+    def __init__(
+        self,
+        bodies: Bodies,
+        ignore: Iterable[Ignore] = (),
+        duration: float | None = None,
+        accuracy: Accuracy | None = None,
+        *,
+        verify: bool = True,
+    ) -> None:
+        self.bodies: tuple[SceneBody, ...] = as_bodies(bodies)
+        self.ignore = as_ignored(ignore, self.bodies)
+        self.duration = duration_of(duration, [body.body for body in self.bodies])
+        self.accuracy = Accuracy() if accuracy is None else accuracy
+        if not isinstance(self.accuracy, Accuracy):
+            raise SceneError("accuracy", f"is {accuracy!r}", "pass an Accuracy")
+        self._shapes = Shapes(verify=verify)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, verify: bool = True) -> Scene:
+        """Return the scene in a TOML or JSON file; the meshes are read when they are needed.
+
+        Args:
+            path: the file. One whose name ends in `.json` is JSON, else one that begins with `{`,
+                and TOML all others.
+            verify: whether the checksums of tree files are compared.
+
+        Raises:
+            SceneError: it cannot be read or is refused; the message names line or key.
+        """
+        from obbcli.scene.files import read_scene
+
+        parts = read_scene(path)
+        return cls(parts.bodies, parts.ignore, parts.duration, parts.accuracy, verify=verify)
+
+    def first_contacts(
+        self, first: bool = False, pairs: Iterable[tuple[str, str]] | None = None
+    ) -> FirstContacts:
+        """Return the first contact of every pair that touches, in order of time.
+
+        Of equal times the order of the bodies decides. Pairs that are not there are proven apart;
+        those that a limit leaves open come as `unresolved`, at the time up to which that is proven.
+
+        Args:
+            first: whether to end after the earliest contact; no question is then refined further
+                than that.
+            pairs: the pairs asked about, by the names of their bodies; only their files are read.
+                None: all.
+
+        Returns:
+            an iterator of `SceneContact` that also has `stats`.
+
+        Raises:
+            SceneError: a pair is none, or names what is not there, or what the scene ignores.
+            MeshError: a mesh cannot be read or is refused.
+            TreeFileError: a tree file is damaged.
+            OSError: a file cannot be read.
+        """
+        return FirstContacts(Asked(self, self._shapes, pairs), first=first)
+
+    def contacts(
+        self, limit: int | None = None, pairs: Iterable[tuple[str, str]] | None = None
+    ) -> AllContacts:
+        """Return the first contact of every pair of triangles that touches, in order of time.
+
+        As `obbcli.contacts` gives them for two bodies; each two are turned to only when their
+        contacts may be next. Where a limit ends the list of two, `unresolved` stands in their
+        stead, at the time up to which it is whole.
+
+        Args:
+            limit: at most so many contacts. None: all.
+            pairs: as of `first_contacts`.
+
+        Returns:
+            an iterator of `SceneContact` that also has `stats`.
+
+        Raises:
+            MotionError: `limit` is no whole number of at least 1, or the sampled method is asked
+                for, which knows the first contact alone.
+            SceneError, MeshError, TreeFileError, OSError: as `first_contacts`.
+        """
+        from obbcli.scene.listed import AllContacts
+
+        most = None if limit is None else whole_limit(limit)
+        return AllContacts(Asked(self, self._shapes, pairs), most)
+
+    def __repr__(self) -> str:
+        return f"Scene({len(self.bodies)} bodies, {self.duration!r} s)"

@@ -1,0 +1,89 @@
+"""`Shapes`: the meshes and trees of a scene, each loaded once and as far as questions reach."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from obbcli.mesh import Mesh, load_mesh
+from obbcli.motion import Body
+from obbcli.scene.results import BodyStats
+from obbcli.tree import ObbTree, begins_as_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from obbcli.motion import Shape
+    from obbcli.scene.bodies import SceneBody
+
+
+class Shapes:
+    """What bodies are made of. A file is loaded once, however many bodies name it.
+
+    Args:
+        verify: whether the checksums of tree files are compared.
+    """
+
+    def __init__(self, *, verify: bool = True) -> None:
+        self._verify = verify
+        self._loaded: dict[Hashable, Mesh | ObbTree] = {}
+        self._trees: dict[Hashable, ObbTree] = {}
+
+    def load(self, shape: Shape) -> Mesh | ObbTree:
+        """Return a shape of which bounds and centroid are known; of a tree file little is read.
+
+        Raises:
+            MeshError: a mesh cannot be read or is refused.
+            TreeFileError: a tree file is damaged.
+            OSError: a file cannot be read.
+        """
+        if isinstance(shape, (Mesh, ObbTree)):
+            return shape
+        key = _key(shape)
+        found = self._loaded.get(key)
+        if found is None:
+            assert isinstance(shape, (str, os.PathLike))
+            if begins_as_tree(Path(shape)):
+                found = ObbTree.open(shape, verify=self._verify)
+            else:
+                found = load_mesh(shape, hashed=False)
+            self._loaded[key] = found
+        return found
+
+    def body(self, body: Body) -> Body:
+        """Return a body on its tree.
+
+        Raises:
+            MeshError, TreeFileError, OSError: as `load`.
+        """
+        shape = self.load(body.shape)
+        if not isinstance(shape, ObbTree):
+            key = _key(body.shape)
+            tree = self._trees.get(key)
+            if tree is None:
+                tree = self._trees[key] = ObbTree.build(shape)
+            shape = tree
+        return Body(shape, body.pose, body.motion)
+
+    def stats(self, body: SceneBody) -> BodyStats:
+        """Return what of a body was used so far."""
+        shape = body.body.shape
+        key = _key(shape)
+        made = shape if isinstance(shape, (Mesh, ObbTree)) else self._loaded.get(key)
+        made = self._trees.get(key, made)
+        if made is None:
+            return BodyStats(body.name, None, 0, 0, None)
+        if isinstance(made, ObbTree):
+            triangles, nodes = made.loaded_counts()
+            return BodyStats(
+                body.name, made.triangle_count, triangles, nodes, made.possible_node_count
+            )
+        # A single triangle needs no box.
+        count = len(made.triangles)
+        return BodyStats(body.name, count, count, 0, count - 1)
+
+
+def _key(shape: Shape) -> Hashable:
+    """Return what two names of one file, and a shape that stands for two bodies, have in common."""
+    return os.path.realpath(shape) if isinstance(shape, (str, os.PathLike)) else id(shape)
