@@ -24,8 +24,9 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
     `bounds` are a proof for the posed vertices rounded to double (see `Pose`), with every rounding
     counted: no two points of the surfaces are nearer than `bounds[0]`, and two of them are no
     further apart than `bounds[1]`. By default they are as close as doubles allow, a few units in
-    the last place of the distance. Surfaces that touch or cross have the distance 0 exactly, and
-    no others do; to be inside is not to touch. Swapping the bodies swaps the points.
+    the last place of the distance, or 2^-49 of the largest coordinate where nothing but rounding
+    tells hundreds of nearest pairs apart. Surfaces that touch or cross have the distance 0 exactly,
+    and no others do; to be inside is not to touch. Swapping the bodies swaps the points.
 
     Every limit of `accuracy` keeps the bounds proven and lets them part: `distance_tolerance` stops
     where they are this close, `max_depth_a`, `max_depth_b` and `leaves` bound what is in a box by
