@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from obbcli.errors import ObbError
+
+# Of so many numbers Python knows sooner than NumPy whether all are finite.
+_SMALL = 16
 
 
 def as_vector(value: ArrayLike, name: str, error: type[ObbError]) -> NDArray[np.float64]:
@@ -40,17 +44,24 @@ def as_floats(
         array = np.array(value, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as fault:
         raise error(name, f"expected numbers of shape {_in_words(shape)}", f"{fault}") from fault
-    if array.ndim != len(shape) or any(
-        n is not None and n != m for n, m in zip(shape, array.shape, strict=True)
+    # Most that comes here is small and as it should be, and NumPy is slow to start.
+    if array.shape != shape and (
+        array.ndim != len(shape)
+        or any(n is not None and n != m for n, m in zip(shape, array.shape, strict=True))
     ):
         raise error(name, f"has shape {array.shape}, expected {_in_words(shape)}")
+    if array.size > _SMALL or not all(map(isfinite, array.ravel().tolist())):
+        _require_finite(array, name, error)
+    array.setflags(write=False)
+    return array
+
+
+def _require_finite(array: NDArray[np.float64], name: str, error: type[ObbError]) -> None:
     finite = np.isfinite(array)
     if not finite.all():
         place = np.unravel_index(int(np.argmin(finite)), array.shape)
         index = ", ".join(str(int(i)) for i in place)
         raise error(f"{name}[{index}]", f"is {array[place]}", "coordinates must be finite")
-    array.setflags(write=False)
-    return array
 
 
 def _in_words(shape: tuple[int | None, ...]) -> str:

@@ -30,7 +30,7 @@ from obbcli.relay import sum_of
 from obbcli.results import Contact, FirstContact, QueryStats, Status
 from obbcli.sampled import SampledQueries
 from obbcli.solids import Containment
-from obbcli.touching import boxes_at_start, contact_at_start, contact_of, unresolved
+from obbcli.touching import answer_at_rest, boxes_at_start, contact_at_start, contact_of, unresolved
 
 if TYPE_CHECKING:
     from obbcli.motion import Body, Shape
@@ -81,7 +81,9 @@ class Query:
     ) -> None:
         self._accuracy = _EXACT if accuracy is None else accuracy
         self._bodies = as_body(a), as_body(b)
-        self._follows_path = any(isinstance(body.motion, PathMotion) for body in self._bodies)
+        self._follows_path = isinstance(self._bodies[0].motion, PathMotion) or isinstance(
+            self._bodies[1].motion, PathMotion
+        )
         self._duration = duration_of(duration, self._bodies)
         self._seconds = {"load": 0.0, "query": 0.0}
         start = time.perf_counter()
@@ -294,6 +296,10 @@ def first_contact(
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
+    if duration is None and accuracy is None and not solid:
+        here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
+        if here is not None and there is not None:
+            return answer_at_rest((as_body(a), as_body(b)), here, there)
     accuracy = _EXACT if accuracy is None else accuracy
     query = Query(a, b, duration, accuracy, solid=solid)
     return query.advance(accuracy.max_iterations, accuracy.timeout)

@@ -232,6 +232,17 @@ def moves_nothing(bodies: tuple[Body, Body], trees: Trees, duration: float) -> b
 
 
 def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
+    """Return how a body moves, as the kernels see it; a body that has its tree remembers."""
+    if body.shape is not tree:
+        return _screw_over(body, tree)
+    remembered = vars(body)
+    screw: kernels.Screw | None = remembered.get("_screw")
+    if screw is None:
+        screw = remembered["_screw"] = _screw_over(body, tree)
+    return screw
+
+
+def _screw_over(body: Body, tree: ObbTree) -> kernels.Screw:
     motion = body.motion
     # A body that does not turn has no use for a pivot, nor for the pass over its mesh to find one.
     pivot = pivot_of(body, tree).tolist() if motion.is_turning else _ORIGIN

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
-from obbcli.results import Contact, Status
+from obbcli.accuracy import Accuracy
+from obbcli.question import limits_of, refused, trees_of
+from obbcli.results import Collision, Contact, FirstContact, Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,6 +21,8 @@ _EVIDENCE = {
     kernels.Evidence.WITHIN_TOLERANCE: "within_tolerance",
     kernels.Evidence.BOXES: "boxes",
 }
+_EXACT_LIMITS = limits_of(Accuracy())
+_SEPARATED = Contact(status=Status.SEPARATED)
 _FEATURES = ("vertex", "edge", "face")
 
 
@@ -101,3 +105,25 @@ def _vector(values: Iterable[float]) -> Vector:
     """Return three floats, without negative zeros."""
     x, y, z = (float(value) + 0.0 for value in values)
     return x, y, z
+
+
+def answer_at_rest(
+    bodies: tuple[Body, Body], here: kernels.Placed, there: kernels.Placed
+) -> FirstContact:
+    """Return what `Query` says of bodies at rest, in a fraction of the calls.
+
+    Raises:
+        MotionError: posed coordinates leave the range of double.
+        TreeFileError: a tree file is damaged.
+    """
+    trees = trees_of(bodies)
+    try:
+        found = Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault
+    contact = _SEPARATED
+    if found.witness is not None:
+        contact = contact_at_start(bodies, trees, *found.witness)
+    elif found.status is Status.UNRESOLVED:
+        contact = unresolved(0.0)
+    return FirstContact.of(contact, found.stats)
