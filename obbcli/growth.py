@@ -26,7 +26,11 @@ _FITS = {
     "min-volume": kernels.Fit.MIN_VOLUME,
     "axis-aligned": kernels.Fit.AXIS_ALIGNED,
 }
-_SPLITS = {"median": kernels.Split.MEDIAN, "center": kernels.Split.CENTER}
+_SPLITS = {
+    "median": kernels.Split.MEDIAN,
+    "center": kernels.Split.CENTER,
+    "compact": kernels.Split.COMPACT,
+}
 _NO_LIMIT = 2**32 - 1
 
 _HULL_FITS = ("hull", "min-volume")

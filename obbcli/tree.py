@@ -51,8 +51,10 @@ class ObbTree(TreeFacts):
                 weights mended), of their corners (`"points"`, §6.1.2), of their convex hull's area
                 (`"hull"`), for the least volume (`"min-volume"`, §6.1.1: nearly; slow to build), or
                 not at all (`"axis-aligned"`).
-            split: parts a node across its longest axis at the median of the triangles' centroids,
-                or at the box's center, trying the next longest axes and at last the median (§6.2).
+            split: parts a node across its longest axis at the median of the triangles' centroids
+                (`"median"`), or at the box's center, trying the next longest axes and at last the
+                median (`"center"`, §6.2); or across any axis where the parts' squared diagonals
+                times their counts are least (`"compact"`).
             leaf_size: a node of so many triangles is not split.
             max_depth: nodes this deep are not split; the root's depth is 0. None: no limit.
             lazy: whether nodes wait until a question first reaches them. The tree and the answers

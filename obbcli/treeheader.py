@@ -31,7 +31,7 @@ BLOCK_BYTES = 4096
 ALIGNMENT = 64
 
 Fit = Literal["triangles", "points", "hull", "min-volume", "axis-aligned"]
-Split = Literal["median", "center"]
+Split = Literal["median", "center", "compact"]
 
 # magic, version, header bytes, header CRC, block bytes, file bytes, boxes, triangles, vertices,
 # scale exponent, description bytes

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
-SPLITS = ("median", "center")
+SPLITS = ("median", "center", "compact")
 UNTURNED = (np.eye(3), np.zeros(3))
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
-SPLITS = ("median", "center")
+SPLITS = ("median", "center", "compact")
 LEAF_SIZES = (1, 2, 3, 7, 64)
 DEPTHS = (None, 0, 1, 4)
 

@@ -221,6 +221,7 @@ def test_golden_file_of_version_1_reads_and_holds_its_mesh() -> None:
 FRESH = {
     ("triangles", "median"): "54516472a8268310",
     ("triangles", "center"): "2d8c809a92fa9956",
+    ("triangles", "compact"): "3020eb39f0c6b1f3",
     ("points", "median"): "d8d5ed4d53af73f0",
     ("axis-aligned", "center"): "afd0cf241c61c64b",
 }

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SUFFIX = ".obbt"
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
-SPLITS = ("median", "center")
+SPLITS = ("median", "center", "compact")
 _UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
@@ -71,7 +71,7 @@ build_options = gathered(
             type=click.Choice(SPLITS),
             default=SPLITS[0],
             show_default=True,
-            help="Part boxes at the median triangle or at their center.",
+            help="Part boxes at the median triangle, at the center, or into the smallest parts.",
         ),
         option(
             _TREE,

@@ -97,7 +97,8 @@ void bind_tree(nb::module_& m) {
         .value("AXIS_ALIGNED", obb::Fit::kAxisAligned);
     nb::enum_<obb::Split>(m, "Split")
         .value("MEDIAN", obb::Split::kMedian)
-        .value("CENTER", obb::Split::kCenter);
+        .value("CENTER", obb::Split::kCenter)
+        .value("COMPACT", obb::Split::kCompact);
 
     nb::class_<Tree>(m, "Tree")
         .def("__init__", &init_tree, "vertices"_a, "corners"_a, "triangle_ids"_a, "nodes"_a,

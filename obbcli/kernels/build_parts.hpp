@@ -16,7 +16,7 @@
 
 namespace obb {
 
-enum class Split { kMedian, kCenter };
+enum class Split { kMedian, kCenter, kCompact };
 
 struct BuildOptions {
     Fit fit = Fit::kTriangles;

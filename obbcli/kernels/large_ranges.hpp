@@ -2,6 +2,7 @@
 #pragma once
 
 #include "build_parts.hpp"
+#include "compact_split.hpp"
 #include "float_passes.hpp"
 #include "small_ranges.hpp"
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -111,6 +113,7 @@ class LargeRanges {
     [[nodiscard]] Vec3 fit_box(Child& child, unsigned threads);
     [[nodiscard]] Extremes measure_child(const Child& child, unsigned threads);
     [[nodiscard]] Threshold choose(const NodeRef& ref, Entry& entry, unsigned threads);
+    [[nodiscard]] std::optional<CompactSplit::Cut> compact_cut(const Child& all) const;
     [[nodiscard]] Threshold median(const NodeRef& ref, const Entry& entry) const;
     void move(const NodeRef& ref, const Entry& entry, const std::array<NodeRef, 2>& children,
               const Threshold& threshold, unsigned threads);

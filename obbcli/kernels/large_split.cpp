@@ -25,20 +25,54 @@ LargeRanges::Threshold LargeRanges::choose(const NodeRef& ref, Entry& entry, uns
         entry.key_high = 3 * entry.frame.scale * half_extents_of(node)[axis];
         entry.key_low = -entry.key_high;
     };
+    const auto count_below = [&](float limit) {
+        return static_cast<std::uint32_t>(std::count_if(keys_.data() + ref.begin,
+                                                        keys_.data() + ref.end,
+                                                        [&](float key) { return key < limit; }));
+    };
     if (options_->split == Split::kCenter) {
         for (const std::size_t axis : order) {
             use_axis(axis);
             const auto middle = static_cast<float>(0.5 * (entry.key_low + entry.key_high));
-            const auto left = static_cast<std::uint32_t>(
-                std::count_if(keys_.data() + ref.begin, keys_.data() + ref.end,
-                              [&](float key) { return key < middle; }));
+            const std::uint32_t left = count_below(middle);
             if (0 < left && left < ref.triangle_count()) {
                 return {middle, 0, left};
             }
         }
     }
+    if (options_->split == Split::kCompact) {
+        if (const auto cut = compact_cut(whole(ref, entry))) {
+            use_axis(cut->axis);
+            const double middle = 0.5 * (entry.key_low + entry.key_high);
+            const double half = 3 * entry.frame.scale * half_extents_of(node)[cut->axis];
+            const auto plane = static_cast<float>(middle + cut->place() * half);
+            const std::uint32_t left = count_below(plane);
+            if (0 < left && left < ref.triangle_count()) { // the floats of keys may all be equal
+                return {plane, 0, left};
+            }
+        }
+    }
     use_axis(order[0]);
     return median(ref, entry);
+}
+
+// So many, evenly taken, tell as much as all.
+std::optional<CompactSplit::Cut> LargeRanges::compact_cut(const Child& all) const {
+    constexpr std::uint32_t kSampled = 4096;
+    const std::uint32_t step = 1 + (all.ref.triangle_count() - 1) / kSampled;
+    const std::uint32_t count = 1 + (all.ref.triangle_count() - 1) / step;
+    const std::size_t stride = std::size_t{count} + kDoubles;
+    const FloatRange range = floats(all);
+    std::vector<double> columns(9 * stride);
+    for (std::size_t k = 0; k < 9; ++k) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            columns[k * stride + i] = range.columns[k][range.begin + i * step];
+        }
+    }
+    const Vec3 half = all.entry.frame.scale * half_extents_of(slots_->nodes[all.ref.slot]);
+    CompactSplit compact(count);
+    return compact.best({all.orientation.axes, as_doubles(all.reference), half},
+                        {columns.data(), stride, count});
 }
 
 // Counts keys in buckets, and looks closer at the one that holds the median. Of equal keys the

@@ -22,7 +22,8 @@ std::uint32_t whole_registers(std::uint32_t count) {
 SmallRanges::SmallRanges(const UnitMesh& mesh, const BuildOptions& options, TreeSlots& slots,
                          std::uint32_t most)
     : mesh_(&mesh), options_(&options), slots_(&slots),
-      stride_(3 * std::size_t{whole_registers(most)} + 2 * kWidth) {
+      stride_(3 * std::size_t{whole_registers(most)} + 2 * kWidth),
+      compact_(options.split == Split::kCompact ? most : 0) {
     for (Side* side : {&from_, &to_}) {
         side->coordinates.resize(9 * stride_);
         side->ids.resize(stride_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "build_parts.hpp"
+#include "compact_split.hpp"
 
 #include <array>
 #include <cstdint>
@@ -60,6 +61,7 @@ class SmallRanges {
     void fit_box(const Side& side, const Block& block, const Orientation& orientation);
 
     [[nodiscard]] std::uint32_t part(const Block& block, const Node& node);
+    [[nodiscard]] std::uint32_t part_compactly(const Block& block, const Node& node);
     void compute_keys(const Block& block, Vec3 axis, Vec3 origin);
     [[nodiscard]] std::uint32_t mark_below_zero(std::uint32_t count);
     void mark_lower_half(std::uint32_t count);
@@ -79,6 +81,7 @@ class SmallRanges {
     Block loaded_{};
     std::vector<double> keys_, sorted_;
     std::vector<std::uint8_t> is_left_;
+    CompactSplit compact_;
     std::vector<Block> blocks_, next_;
     std::vector<Vec3> references_;
     std::uint32_t box_count_ = 0;

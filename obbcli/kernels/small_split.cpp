@@ -9,7 +9,7 @@ namespace obb {
 
 // Marks who goes left, and returns how many do. The center rule may put all centroids on one side;
 // the next longest axes are tried then, and at last the median of the longest axis, which always
-// parts them.
+// parts them. So it does where the compact rule finds all centroids together.
 std::uint32_t SmallRanges::part(const Block& block, const Node& node) {
     const std::uint32_t count = block.ref.triangle_count();
     if (count == 2) { // one on each side, whichever
@@ -28,9 +28,28 @@ std::uint32_t SmallRanges::part(const Block& block, const Node& node) {
             }
         }
     }
+    if (options_->split == Split::kCompact) {
+        const std::uint32_t left = part_compactly(block, node);
+        if (left > 0) {
+            return left;
+        }
+    }
     compute_keys(block, axes[order[0]], node.center);
     mark_lower_half(count);
     return count / 2;
+}
+
+// Marks nobody where it finds all centroids together.
+std::uint32_t SmallRanges::part_compactly(const Block& block, const Node& node) {
+    const std::uint32_t count = block.ref.triangle_count();
+    const auto cut = compact_.best({axes_of(node.rotation), node.center, half_extents_of(node)},
+                                   {column(from_, 0) + block.at, stride_, count});
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 0; cut && i < count; ++i) {
+        is_left_[i] = compact_.is_left(*cut, i) ? 1 : 0;
+        left += is_left_[i];
+    }
+    return left;
 }
 
 // Three times the centroids' places along an axis.

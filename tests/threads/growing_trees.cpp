@@ -161,7 +161,8 @@ int faults(const Surface& s, const obb::BuildOptions& options) {
 
 int main() {
     const Surface s = bumpy_torus();
-    const int wrong = faults(s, {}) + faults(s, {.split = obb::Split::kCenter, .leaf_size = 3});
+    const int wrong = faults(s, {}) + faults(s, {.split = obb::Split::kMedian}) +
+                      faults(s, {.split = obb::Split::kCenter, .leaf_size = 3});
     std::printf("%d answers differ\n", wrong);
     return wrong == 0 ? 0 : 1;
 }
