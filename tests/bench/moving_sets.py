@@ -121,16 +121,16 @@ def mesh_pairs(quick: bool, folder: Path | None) -> Iterator[tuple[str, Surface,
     for triangles in QUICK_BLOBS if quick else BLOBS:
         yield f"blobs {triangles:,}", blob(triangles, 1), blob(triangles, 2)
     if folder is not None:
-        loaded = {name: _loaded(folder, name) for pair in MESH_PAIRS for name in pair}
+        loaded = {name: normalized(folder / f"{name}.obj") for pair in MESH_PAIRS for name in pair}
         for one, two in MESH_PAIRS[:1] if quick else MESH_PAIRS:
             yield f"{one}, {two}", loaded[one], loaded[two]
 
 
-def _loaded(folder: Path, name: str) -> Surface:
+def normalized(path: Path) -> Surface:
     """Return a mesh about the origin, its box's diagonal 2."""
     import obbcli
 
-    mesh = obbcli.load_mesh(folder / f"{name}.obj")
+    mesh = obbcli.load_mesh(path)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     scale = 2.0 / float(np.linalg.norm(high - low))
     vertices = (mesh.vertices - (low + high) / 2) * scale

@@ -1,8 +1,9 @@
 """Run the benches: `python tests/bench/run.py [--quick] [--only NAME] [--json FILE]`.
 
 Every answer is asserted; what is printed is the median of rounds in turns, and the quartiles.
-First contact asks `--queries` random questions a class, also of the meshes cow.obj, spot.obj,
-fandisk.obj and rocker-arm.obj where `--meshes` or OBBTREE_BENCH_MESHES names their folder.
+First contact and fits ask `--queries` random questions a class, also of the meshes cow.obj,
+spot.obj, fandisk.obj and rocker-arm.obj where `--meshes` or OBBTREE_BENCH_MESHES names their
+folder.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 import bench_build
 import bench_distance
 import bench_first_contact
+import bench_fits
 import bench_primitives
 import bench_static
 import bench_wall
@@ -34,9 +36,10 @@ BENCHES = {
     "first-contact": lambda options: bench_first_contact.run(
         options.quick, options.queries, options.meshes
     ),
+    "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
     "wall": lambda options: bench_wall.run(options.quick),
 }
-TABLES = {"first contact": moving_tables.tables}
+TABLES = {"first contact": moving_tables.tables, "fits": bench_fits.tables}
 
 
 def main() -> None:
