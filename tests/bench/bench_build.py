@@ -1,22 +1,25 @@
-"""Whole trees: seconds, and bytes a triangle in memory and on disk."""
+"""Whole trees: seconds, by split and threads, and bytes a triangle in memory and on disk."""
 
 from __future__ import annotations
 
 import gc
 import tempfile
 from functools import partial
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from harness import Row, alternate, resident_bytes
+from harness import OURS, Row, alternate, resident_bytes
 from peers import CONTESTANTS, Contestant
 from scene_surfaces import Surface, blob
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-SIZES = {100_000: 9, 1_000_000: 3}
+SIZES = {100_000: 9, 1_000_000: 5}
 QUICK_SIZES = {10_000: 5, 100_000: 3}
+SPLITS = ("compact", "median")
+THREADS = (1, 2)
 
 
 def run(quick: bool) -> Iterator[Row]:
@@ -24,8 +27,20 @@ def run(quick: bool) -> Iterator[Row]:
     for triangles, rounds in (QUICK_SIZES if quick else SIZES).items():
         surface = blob(triangles)
         calls = {one.name: partial(one.build, surface) for one in CONTESTANTS}
+        for split, threads in product(SPLITS, THREADS):
+            calls[f"{OURS} {split} x{threads}"] = partial(whole, surface, split, threads)
         notes = {one.name: bytes_a_triangle(one, surface) for one in CONTESTANTS}
         yield Row("build", "blob", len(surface.faces), alternate(calls, rounds), notes)
+
+
+def whole(surface: Surface, split: Any, threads: int) -> object:
+    """Return a whole tree that so many threads made; the mesh's own checks are part of it."""
+    from obbcli import Mesh
+    from obbcli.growth import Growth
+
+    mesh = Mesh(surface.vertices, surface.faces)
+    options = ("triangles", split, 1, None, None)
+    return Growth(mesh, *options, on_demand=False, threads=threads).arrays()
 
 
 def bytes_a_triangle(one: Contestant, surface: Surface) -> dict[str, object]:

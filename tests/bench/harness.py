@@ -177,7 +177,7 @@ def markdown(lines: Sequence[Sequence[str]]) -> str:
 
 def _line(row: Row, who: Sequence[str]) -> list[str]:
     cells = [seconds_text(row.timings[name]) if name in row.timings else "-" for name in who]
-    others = [timing.median for name, timing in row.timings.items() if name != OURS]
+    others = [timing.median for name, timing in row.timings.items() if not name.startswith(OURS)]
     ratio = "-"
     if OURS in row.timings and others:
         ratio = f"{min(others) / row.timings[OURS].median:.2f}x"
