@@ -32,7 +32,7 @@ class ObbTree(TreeFacts):
         cls,
         mesh_or_path: Mesh | str | os.PathLike[str],
         fit: Fit = "triangles",
-        split: Split = "median",
+        split: Split = "compact",
         leaf_size: int = 1,
         max_depth: int | None = None,
         lazy: bool = True,

@@ -175,8 +175,8 @@ class TreeFacts:
     def possible_node_count(self) -> int:
         """How many boxes the tree has when it is whole.
 
-        Until it is, with a limit on leaves or depth, how many it has at most; `split="median"` tells
-        from the start.
+        Until it is, with a limit on leaves or depth, how many it has at most, unless it is parted
+        by medians.
         """
         return self.node_counts()[1]
 

@@ -160,7 +160,7 @@ def test_list_like_tree_grows_without_running_out_of_stack() -> None:
 
 def test_interrupted_completion_keeps_what_was_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(growth, "_TRIANGLES_A_SLICE", 1000)
-    tree = growth.Growth(Mesh(*soup(3000)), "triangles", "median", 1, None, None)
+    tree = growth.Growth(Mesh(*soup(3000)), "triangles", "compact", 1, None, None)
 
     def interrupt(share: float) -> None:
         raise KeyboardInterrupt

@@ -69,7 +69,7 @@ build_options = gathered(
             _TREE,
             "--split",
             type=click.Choice(SPLITS),
-            default=SPLITS[0],
+            default="compact",
             show_default=True,
             help="Part boxes at the median triangle, at the center, or into the smallest parts.",
         ),

@@ -20,7 +20,7 @@ enum class Split { kMedian, kCenter, kCompact };
 
 struct BuildOptions {
     Fit fit = Fit::kTriangles;
-    Split split = Split::kMedian;
+    Split split = Split::kCompact;
     // A range of at most this many triangles is a leaf.
     std::uint32_t leaf_size = 1;
     // A node this deep is a leaf, whatever it holds; the root's depth is 0.

@@ -36,7 +36,7 @@ def test_build_document_tells_what_was_written(here, obbtree):
     assert document["schema"] == "obbtree/build/1"
     assert document["inputs"][0] == as_input(here / "cube.stl")
     assert document["options"] == {
-        "fit": "triangles", "split": "median", "leaf_size": 1, "max_depth": None,
+        "fit": "triangles", "split": "compact", "leaf_size": 1, "max_depth": None,
     }  # fmt: skip
     assert document["result"]["files"][0] == {
         "output": "cube.obbt",
@@ -44,7 +44,7 @@ def test_build_document_tells_what_was_written(here, obbtree):
         "triangle_count": 12,
         "vertex_count": 36,
         "node_count": 11,
-        "level_count": 5,
+        "level_count": 7,
         "file_bytes": size,
         "bytes_per_triangle": size / 12,
     }

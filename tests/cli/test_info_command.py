@@ -54,7 +54,7 @@ def test_info_of_a_tree(here, obbtree):
     tree = result["tree"]
     assert result["kind"] == "tree"
     assert result["is_watertight"] is True
-    assert (tree["fit"], tree["split"], tree["leaf_size"]) == ("triangles", "median", 2)
+    assert (tree["fit"], tree["split"], tree["leaf_size"]) == ("triangles", "compact", 2)
     assert tree["source"] == "cube.stl"
     assert tree["source_sha256"] == hashlib.sha256((here / "cube.stl").read_bytes()).hexdigest()
     assert tree["source_state"] == "unchanged"
