@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.motion import Body
+from obbcli.motion import Body, Motion, PathMotion
+from obbcli.question import pivot_of
 from obbcli.scene.results import BodyStats
 from obbcli.tree import ObbTree, begins_as_tree
 
@@ -64,7 +65,13 @@ class Shapes:
             if tree is None:
                 tree = self._trees[key] = ObbTree.build(shape)
             shape = tree
-        return Body(shape, body.pose, body.motion)
+        motion = body.motion
+        is_path = isinstance(motion, PathMotion)
+        if not is_path and motion.is_turning and motion.pivot is None:
+            # Posed once, and not for each question about the body.
+            velocity, spin = motion.linear_velocity, motion.angular_velocity
+            motion = Motion(velocity, spin, pivot_of(body, shape))
+        return Body(shape, body.pose, motion)
 
     def stats(self, body: SceneBody) -> BodyStats:
         """Return what of a body was used so far."""

@@ -1,11 +1,12 @@
 """Where bodies go: boxes that travel at constant velocities, and hold their bodies all the while.
 
-A body that turns stays in the solid that its box sweeps about the axis, however often it turns,
-and within the largest chord of a turn of where it was. Both hold for any rotation by the angle, so
-the box around what they have in common travels with the linear velocity. Rounding is counted once
-for all: boxes are wider by 2^-40 of every length that goes into them, which also covers what the
-questions about pairs round (`2^-45`, as `legs` and the kernels say), so that a pair whose boxes do
-not meet is one that these questions prove apart.
+A body that turns stays in the solid that its box sweeps about the axis, however often it turns, in
+the ball about its pivot, and within the largest chord of its turn of where it was. The box around
+what these have in common travels with the linear velocity.
+
+Rounding is counted once for all: boxes are wider by 2^-40 of every length that goes into them. That
+also covers what the questions about pairs round (2^-45, as `legs` and the kernels say), so that a
+pair whose boxes do not meet is one that these questions prove apart.
 """
 
 from __future__ import annotations
@@ -92,6 +93,8 @@ def swept_boxes(
                 else:
                     pieces += _pieces_of_path(number, bounds, motion, duration)
             else:
+                if isinstance(motion, PathMotion):
+                    motion = Motion()
                 pivot = pivot_of(body, shape) if motion.is_turning else np.zeros(3)
                 pieces.append(_Piece(number, 0.0, duration, bounds, body.pose, motion, pivot))
         boxes = _boxes(pieces, is_sampled=is_sampled)
@@ -172,7 +175,7 @@ def _boxes(pieces: Sequence[_Piece], *, is_sampled: bool) -> Array:
     placed = _placed(pieces)
     low, high = placed.corners.min(axis=1), placed.corners.max(axis=1)
     is_turning = (placed.spin != 0).max(axis=1, keepdims=True)
-    turned_low, turned_high = (_ball if is_sampled else _turned)(placed, low, high)
+    turned_low, turned_high = _ball(placed) if is_sampled else _turned(placed, low, high)
     low, high = np.where(is_turning, turned_low, low), np.where(is_turning, turned_high, high)
     wider = MARGIN * placed.sizes + _LEAST + _jumps(pieces)
     return np.concatenate([low - wider[:, None], high + wider[:, None], placed.velocity], axis=1)
@@ -195,10 +198,14 @@ def _turned(placed: _Placed, low: Array, high: Array) -> tuple[Array, Array]:
     solid_high = placed.pivot + ends.max(axis=0) + radius * across
     angle = (1 + MARGIN) * largest * length * placed.time[:, None]
     chord = (1 + MARGIN) * 2 * radius * np.sin(0.5 * np.minimum(angle, np.pi)) * across
-    return np.maximum(solid_low, low - chord), np.minimum(solid_high, high + chord)
+    ball_low, ball_high = _ball(placed)
+    return (
+        np.maximum(np.maximum(solid_low, ball_low), low - chord),
+        np.minimum(np.minimum(solid_high, ball_high), high + chord),
+    )
 
 
-def _ball(placed: _Placed, low: Array, high: Array) -> tuple[Array, Array]:  # noqa: ARG001
+def _ball(placed: _Placed) -> tuple[Array, Array]:
     """Return boxes around bodies in any rotation about their pivots."""
     radius = _STRETCH * _lengths(placed.corners - placed.pivot[:, None]).max(axis=1)[:, None]
     return placed.pivot - radius, placed.pivot + radius
