@@ -67,6 +67,21 @@ def test_question_that_has_come_far_enough_is_left_alone() -> None:
     assert query.advance(until=math.inf).status == "contact"
 
 
+def test_nearness_that_turns_out_to_be_no_contact_ends() -> None:
+    # Past a cube at a distance that only the slack of the path's pieces can bridge.
+    places = [[4, 0, 2 + 2**-51], [-4, 0, 2 + 2**-51], [-4, 0, 9]]
+    poses = [Pose([0, 0, 0.5 * k], place) for k, place in enumerate(places)]
+    poses[1] = Pose(None, places[1])
+    body = Body(CUBE, motion=Motion.through([0, 1, 2], poses))
+    query = Query(body, CUBE)
+
+    answer = query.advance(until=0.3)
+
+    assert query.is_finished
+    assert answer.evidence == "within_tolerance"
+    assert answer.time == pytest.approx(0.25)
+
+
 @pytest.mark.parametrize("limit", [1, 5, 40, 200])
 @pytest.mark.parametrize("name", BODIES)
 def test_limit_of_steps_counts_all_steps(name: str, limit: int) -> None:

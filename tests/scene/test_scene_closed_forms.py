@@ -83,6 +83,22 @@ def test_turning_bar_meets_the_posts_around_it_in_order() -> None:
     assert [name for name, *_ in found(scene)] == ["post 1", "post 3", "post 0", "post 2"]
 
 
+def test_bracket_that_begins_early_is_in_its_place() -> None:
+    # One turns about its course: it is met at t = 1/2, and its bracket is wide.
+    turning = Body(CUBE, Pose(translation=[5, 40.3, 0.2]), Motion([-6, 0, 0], [5, 0, 0]))
+    pair, accuracy = {"c": cube(0, 40, 0), "d": turning}, Accuracy(time_tolerance=0.2)
+    (*_, low), *_ = found(Scene(pair, accuracy=accuracy))
+    assert 0.49 < low < 0.5
+    # The other meets after the bracket begins, and before bounds let the first two meet.
+    time = 0.25 + 0.5 * low
+    straight = cube(2 + 6 * time, 0.3, 0.2, velocity=(-6, 0, 0))
+
+    contacts = found(Scene({"a": cube(0, 0, 0), "b": straight, **pair}, accuracy=accuracy))
+
+    assert contacts == [("c", "d", low), ("a", "b", pytest.approx(time, abs=1e-15))]
+    assert low < contacts[1][2]
+
+
 def test_clearance_is_kept_between_all_pairs() -> None:
     bodies = {"a": cube(0, 0, 0), "b": cube(4, 0, 0, velocity=(-1, 0, 0)), "c": cube(0, 0, 2.5)}
 
