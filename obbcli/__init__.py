@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from obbcli.query import collide, triangle_pairs
     from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
     from obbcli.scene import Scene, SceneBody, SceneContact
+    from obbcli.sweeps import sweep
     from obbcli.tree import ObbTree
 
 # A literal, because asking the installed metadata costs three times a bare interpreter's start.
@@ -59,6 +60,7 @@ _HOMES = {
     "distance": "nearest",
     "first_contact": "contact",
     "load_mesh": "mesh",
+    "sweep": "sweeps",
     "triangle_pairs": "query",
 }
 
@@ -91,6 +93,7 @@ __all__ = [
     "distance",
     "first_contact",
     "load_mesh",
+    "sweep",
     "triangle_pairs",
 ]
 

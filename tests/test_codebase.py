@@ -53,7 +53,7 @@ LAYERS = (
         "pairs",
         "query",
     ),
-    ("scene", "sweep", "study", "view"),
+    ("scene", "sweeps", "study", "view"),
     ("report",),
     ("cli",),
     ("__init__", "__main__"),

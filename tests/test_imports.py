@@ -37,6 +37,7 @@ def modules_after(code: str, *arguments: str) -> set[str]:
         "from obbcli.cli import main; main(['collide', '--help'])",
         "from obbcli.cli import main; main(['build', '--help'])",
         "from obbcli.cli import main; main(['scene', '--help'])",
+        "from obbcli.cli import main; main(['sweep', '--help'])",
         "from obbcli.cli import main; main(['collide', 'a.stl'])",
     ],
 )

@@ -15,6 +15,7 @@ _COMMANDS = {
     "first-contact": "first_contact",
     "distance": "distance",
     "scene": "scene",
+    "sweep": "sweep",
     "build": "build",
     "info": "info",
 }
@@ -27,6 +28,8 @@ obbtree: do these two triangle meshes touch, and when first?
                                          when and where do they first touch?
   obbtree distance gear.stl shaft.obj    how far apart are they, and where?
   obbtree scene cell.toml                the same of many bodies, earliest first
+  obbtree sweep gear.stl pinion.stl motions.csv -o contacts.jsonl
+                                         first-contact, once a row of a file
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 

@@ -92,11 +92,12 @@ class Asked(NamedTuple):
         return Setting(sources, motion, question.accuracy, solid)
 
 
-def about_two(exit_code: str) -> Decorator:
+def about_two(exit_code: str, output: str = "Write the answer to FILE.") -> Decorator:
     """Return what gives a command its A and B, and all options of `asked`.
 
     Args:
         exit_code: the help of `--exit-code`.
+        output: the help of `-o`.
     """
     return gathered(
         "asked",
@@ -109,7 +110,7 @@ def about_two(exit_code: str) -> Decorator:
             motion_options,
             accuracy_options,
             verify_option,
-            common_options(),
+            common_options(output),
         ),
     )
 

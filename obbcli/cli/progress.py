@@ -74,6 +74,37 @@ def proving(duration: float, what: str, *, wanted: bool) -> Iterator[Callable[[f
         yield show
 
 
+@contextmanager
+def counting(*, wanted: bool) -> Iterator[Callable[[float, int], None]]:
+    """Give what shows how many rows are answered, how fast, and how long the rest takes.
+
+    Args:
+        wanted: False draws nothing.
+
+    Yields:
+        a function that takes the share of the input that is done, 0 to 1, and the rows answered
+        since the body began.
+    """
+    if not (wanted and _is_terminal()):
+        yield lambda _share, _rows: None
+        return
+    start = time.monotonic()
+    begun: list[float] = []
+    with _progress() as progress:
+        task = progress.add_task("0 rows", total=1.0)
+
+        def show(share: float, rows: int) -> None:
+            # What was skipped, of a sweep that goes on, took no time.
+            begun[:] = begun or [share]
+            seconds = time.monotonic() - start
+            done = share - begun[0]
+            left = f", {seconds * (1 - share) / done:,.0f} s left" if done > 0 else ""
+            text = f"{rows:,} rows, {rows / max(seconds, 1e-9):,.0f} a second{left}"
+            progress.update(task, completed=share, description=text)
+
+        yield show
+
+
 def _is_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
 

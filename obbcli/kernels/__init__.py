@@ -20,6 +20,7 @@ from obbcli.kernels._core import (
     Screw,
     Split,
     StaticQuery,
+    SweepOptions,
     Tree,
     TreeBuilder,
     TreeError,
@@ -32,6 +33,7 @@ from obbcli.kernels._core import (
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
+    sweep,
     swept_pairs,
     triangle_pairs,
 )
@@ -56,6 +58,7 @@ __all__ = [
     "Screw",
     "Split",
     "StaticQuery",
+    "SweepOptions",
     "Tree",
     "TreeBuilder",
     "TreeError",
@@ -67,6 +70,7 @@ __all__ = [
     "first_triangles_of_parts",
     "primitive_first_contacts",
     "primitive_intersects",
+    "sweep",
     "swept_pairs",
     "triangle_pairs",
 ]

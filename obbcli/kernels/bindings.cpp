@@ -24,6 +24,7 @@ NB_MODULE(_core, m) {
     bind_file_tree(m);
     bind_static_query(m);
     bind_contact_query(m);
+    bind_sweep(m);
     bind_containment(m);
     bind_primitives(m);
     bind_distance(m);

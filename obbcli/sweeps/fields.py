@@ -1,0 +1,112 @@
+"""What a row of a sweep may say: names and kinds of its fields, from cells of text or from JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from obbcli.errors import MotionError, ObbError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_OF_A = ("vel", "omega", "pivot", "translate", "rotate")
+VECTORS = (*_OF_A, *(f"{name}_b" for name in _OF_A))
+FIELDS = (*VECTORS, "duration", "id")
+
+Vector: TypeAlias = tuple[float, float, float]
+Values: TypeAlias = "Mapping[str, Vector | float]"
+Identity: TypeAlias = "str | int | float | None"
+
+
+class Row(NamedTuple):
+    """A question as it was read.
+
+    Attributes:
+        number: 0 for the first.
+        where: file and line.
+        identity: what the row calls itself.
+        values: its fields by name; those left out are not there.
+        error: why it asks nothing; None of a good row.
+    """
+
+    number: int
+    where: str
+    identity: Identity
+    values: Values
+    error: ObbError | None = None
+
+
+def number_in(text: str, where: str) -> float:
+    """Return the finite number in a cell.
+
+    Raises:
+        MotionError: it is none.
+    """
+    try:
+        # Python's own grouping of digits is a slip of the finger elsewhere.
+        value = math.nan if "_" in text else float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise MotionError(where, f"{_short(text)} is not a finite number", "correct it")
+    return value
+
+
+def vector_in(text: str, where: str) -> Vector:
+    """Return the three finite numbers in a cell, which spaces separate.
+
+    Raises:
+        MotionError: they are not.
+    """
+    words = text.split()
+    if len(words) != 3:
+        raise MotionError(
+            where, f"{_short(text)} is not three numbers", "separate them with spaces"
+        )
+    x, y, z = (number_in(word, where) for word in words)
+    return x, y, z
+
+
+def number_of(value: object, where: str) -> float:
+    """Return a finite number of a JSON document.
+
+    Raises:
+        MotionError: it is none.
+    """
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if math.isfinite(number):
+            return number
+    raise MotionError(where, f"{_short(value)} is not a finite number", "correct it")
+
+
+def vector_of(value: object, where: str) -> Vector:
+    """Return the three finite numbers of a JSON list.
+
+    Raises:
+        MotionError: they are not.
+    """
+    if not isinstance(value, list) or len(value) != 3:
+        raise MotionError(where, f"{_short(value)} is not a list of three numbers", "correct it")
+    x, y, z = (number_of(part, where) for part in value)
+    return x, y, z
+
+
+def unknown(name: str, where: str, what: str, known: Iterable[str] = FIELDS) -> ObbError:
+    """Return the error for a name that no field has, with the nearest one that does."""
+    from difflib import get_close_matches
+
+    names = list(known)
+    near = get_close_matches(name, names, n=1)
+    remedy = f"did you mean {near[0]!r}?" if near else f"the {what}s are " + ", ".join(FIELDS)
+    return ObbError(where, f"there is no {what} {_short(name)}", remedy)
+
+
+def _short(value: object) -> str:
+    """Return what was found, not more of it than fits in a line."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:50]}..."

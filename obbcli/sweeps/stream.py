@@ -1,0 +1,58 @@
+"""Rows to results in chunks: on this machine's cores, or handed on to a cluster."""
+
+from __future__ import annotations
+
+import time
+from itertools import chain, islice
+from typing import TYPE_CHECKING
+
+from obbcli.sweeps.blocks import answer_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from obbcli.question import Trees
+    from obbcli.sweeps.blocks import Block
+    from obbcli.sweeps.fields import Row
+    from obbcli.sweeps.questions import Setting
+
+# s: what an interruption may lose, and how often progress shows.
+_CHUNK_SECONDS = 0.5
+_FIRST, _MOST = 16, 8192
+_GROWTH = 4
+
+
+class Chunks:
+    """How many rows to ask at a time: as many as take about half a second."""
+
+    def __init__(self) -> None:
+        self.row_count = _FIRST
+
+    def measured(self, row_count: int, seconds: float) -> None:
+        """Take note of how long some rows took, s."""
+        fitting = int(_CHUNK_SECONDS * row_count / max(seconds, 1e-9))
+        self.row_count = max(1, min(fitting, _GROWTH * self.row_count, _MOST))
+
+
+def started(rows: Iterator[Row]) -> Iterator[Row]:
+    """Return rows of which the first was read already, so that a fault before it shows.
+
+    Raises:
+        ObbError: there is none, or none can be read.
+    """
+    first = next(rows)
+    return chain([first], rows)
+
+
+def answered(trees: Trees, rows: Iterator[Row], setting: Setting, threads: int) -> Iterator[Block]:
+    """Yield the results of rows in order, some at a time.
+
+    Raises:
+        TreeFileError: a tree file is damaged.
+        ObbError: the rows cannot be read on.
+    """
+    chunks = Chunks()
+    while some := list(islice(rows, chunks.row_count)):
+        start = time.perf_counter()
+        yield answer_rows(trees, some, setting, threads)
+        chunks.measured(len(some), time.perf_counter() - start)
