@@ -120,7 +120,7 @@ def test_bodies_that_touch_at_the_start_say_where(pair, accuracy):
 
 @pytest.fixture(scope="module")
 def sheets() -> tuple[ObbTree, Body]:
-    """Return a wavy sheet and itself a little above, which takes thousands of pops to tell apart."""
+    """Return a wavy sheet and itself a little above: thousands of pops to tell apart."""
     surface = sheet(8000, 0.2)
     tree = ObbTree.build(Mesh(surface.vertices, surface.faces))
     return tree, Body(tree, Pose(None, (0, 0, 0.003)))
