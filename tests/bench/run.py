@@ -21,6 +21,7 @@ import bench_distance
 import bench_first_contact
 import bench_fits
 import bench_primitives
+import bench_scene
 import bench_static
 import bench_wall
 import moving_tables
@@ -37,6 +38,7 @@ BENCHES = {
         options.quick, options.queries, options.meshes
     ),
     "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
+    "scene": lambda options: bench_scene.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
 }
 TABLES = {"first contact": moving_tables.tables, "fits": bench_fits.tables}
