@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli.motion import Motion, PathMotion
-from obbcli.question import pivot_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 MARGIN = 2.0**-40
+_NOWHERE = np.zeros(3)  # where bodies that do not turn have their pivots
 _LEAST = 2.0**-1060  # what operations on the smallest doubles may be off by, and more
 # By how much poses, orthonormal to 1e-9, may lengthen a vector.
 _STRETCH = 1 + 2.0**-28
@@ -61,7 +61,9 @@ class _Piece(NamedTuple):
     bounds: Array
     pose: Pose
     motion: Motion
-    pivot: Array
+    # World coordinates; None: the pose of the centroid, which is of the mesh.
+    pivot: Array | None
+    centroid: Array
     # The pose that the next piece starts with, and after how long; None where none follows.
     after: tuple[Pose, float] | None = None
 
@@ -95,8 +97,11 @@ def swept_boxes(
             else:
                 if isinstance(motion, PathMotion):
                     motion = Motion()
-                pivot = pivot_of(body, shape) if motion.is_turning else np.zeros(3)
-                pieces.append(_Piece(number, 0.0, duration, bounds, body.pose, motion, pivot))
+                pivot = motion.pivot if motion.is_turning else _NOWHERE
+                centroid = shape.surface_centroid if pivot is None else _NOWHERE
+                pieces.append(
+                    _Piece(number, 0.0, duration, bounds, body.pose, motion, pivot, centroid)
+                )
         boxes = _boxes(pieces, is_sampled=is_sampled)
     times = [(piece.start, piece.end) for piece in pieces] + [(0.0, duration)] * len(balls)
     numbers = [piece.body for piece in pieces] + [number for number, _ in balls]
@@ -119,7 +124,7 @@ def _pieces_of_path(
     last = len(times) - 1
     if times[0] > 0:
         end = min(times[0], duration)
-        yield _Piece(number, 0.0, end, bounds, poses[0], Motion(), np.zeros(3))
+        yield _Piece(number, 0.0, end, bounds, poses[0], Motion(), _NOWHERE, _NOWHERE)
     for k, start in enumerate(times):
         if start > duration:
             return
@@ -127,7 +132,7 @@ def _pieces_of_path(
         after = None if k == last else (poses[k + 1], times[k + 1] - start)
         piece = motion.piece(k)
         pivot = poses[k].translation
-        yield _Piece(number, start, end, bounds, poses[k], piece, pivot, after)
+        yield _Piece(number, start, end, bounds, poses[k], piece, pivot, _NOWHERE, after)
 
 
 def _ball_of_path(bounds: Array, motion: PathMotion) -> Array:
@@ -159,7 +164,11 @@ def _placed(pieces: Sequence[_Piece]) -> _Placed:
     shifts = np.array([piece.pose.translation for piece in pieces])
     placed = corners @ rotations.transpose(0, 2, 1) + shifts[:, None]
     velocity = np.array([piece.motion.linear_velocity for piece in pieces])
-    pivot = np.array([piece.pivot for piece in pieces])
+    centroids = np.array([piece.centroid for piece in pieces])
+    pivot = (rotations @ centroids[:, :, None])[:, :, 0] + shifts
+    rows = [row for row, piece in enumerate(pieces) if piece.pivot is not None]
+    if rows:
+        pivot[rows] = [pieces[row].pivot for row in rows]
     time = np.array([piece.end - piece.start for piece in pieces])
     sizes = 2 * np.abs(corners).sum(axis=2).max(axis=1)
     for vectors in (shifts, 2 * pivot, time[:, None] * velocity):
