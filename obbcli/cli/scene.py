@@ -225,7 +225,7 @@ def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:
     emit(record, explained_tables if explains else scene_tables, common, bare=scene_bare)
     result = record["result"]
     if result["interrupted"] and not common.quiet:
-        note(f"note: interrupted; {len(result['unresolved'])} pairs are unresolved")
+        note(f"note: interrupted; unresolved pairs: {len(result['unresolved'])}")
 
 
 def _exit_code(result: Record, *, asked: bool) -> int:
