@@ -117,6 +117,15 @@ class ObbTree(TreeFacts):
         surface = self._surface or treeheader.Surface.of(self.mesh)
         return treefile.write_tree(path, self._arrays, surface)
 
+    def to_bytes(self) -> bytes:
+        """Return the bytes of the tree's file, as `save` would write it.
+
+        Raises:
+            TreeFileError: the tree was opened from a file that is damaged.
+        """
+        surface = self._surface or treeheader.Surface.of(self.mesh)
+        return b"".join(treefile.tree_bytes(self._arrays, surface))
+
     def check(self) -> None:
         """Prove the tree: checksums, structure, and every triangle inside all boxes above it.
 

@@ -65,6 +65,18 @@ def write_tree(path: str | os.PathLike[str], arrays: TreeArrays, surface: Surfac
     Raises:
         OSError: the place cannot be written to; nothing is left behind.
     """
+    header, data = tree_bytes(arrays, surface)
+    write_whole(path, header, data)
+    return len(header) + len(data)
+
+
+def tree_bytes(arrays: TreeArrays, surface: Surface) -> tuple[bytes, bytes]:
+    """Return the two parts of a tree file: its header, and what follows.
+
+    Args:
+        arrays: the tree.
+        surface: of its mesh.
+    """
     data = b"".join(_padded(_little_endian(array)) for array in _sections(arrays))
     header = pack_header(
         (len(arrays.nodes), len(arrays.corners), len(arrays.vertices)),
@@ -74,8 +86,7 @@ def write_tree(path: str | os.PathLike[str], arrays: TreeArrays, surface: Surfac
         kernels.block_checksums(np.frombuffer(data, np.uint8)),
         len(data),
     )
-    write_whole(path, header, data)
-    return len(header) + len(data)
+    return header, data
 
 
 def parse_tree(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack, contextmanager
+from functools import partial
+from importlib.util import find_spec
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import click
 
@@ -19,16 +21,21 @@ from obbcli.cli.types import PathName, Whole
 from obbcli.cores import thread_count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
+    from obbcli.question import Trees
     from obbcli.report.record import Record
     from obbcli.report.sweep import Swept
+    from obbcli.sweeps.blocks import Block
+    from obbcli.sweeps.fields import Row
     from obbcli.sweeps.queries import Queries
     from obbcli.sweeps.questions import Setting
     from obbcli.sweeps.results_file import ResultsFile
+
+    Answerer: TypeAlias = Callable[[Iterator[Row]], Iterator[Block]]
 
 
 class SweepOptions(NamedTuple):
@@ -37,6 +44,8 @@ class SweepOptions(NamedTuple):
     resume: bool
     force: bool
     threads: int | None
+    workers: int | None
+    scheduler: str | None
 
 
 _SWEEP = "Sweep"
@@ -52,6 +61,16 @@ sweep_options = gathered(
             type=Whole(1),
             metavar="N",
             help="Ask about N rows at a time [default: one a core].",
+        ),
+        option(
+            _SWEEP,
+            "--workers",
+            type=Whole(1),
+            metavar="N",
+            help="Start a Dask cluster of N processes for it (needs obbtree[distributed]).",
+        ),
+        option(
+            _SWEEP, "--scheduler", metavar="ADDRESS", help="Use the Dask cluster that is there."
         ),
     ),
 )
@@ -107,10 +126,26 @@ def _output(asked: Asked, queries: str, how: SweepOptions) -> Path:
         raise UsageError("--resume", "keeps results, and --force replaces them", "leave one out")
     if queries == STDIN and STDIN in (asked.a, asked.b):
         raise UsageError("QUERIES", "is standard input, and so is a mesh", "name a file for one")
+    _check_cluster(how)
     keep_inputs(output, (asked.a, asked.b, queries))
     if output.is_file() and not (how.resume or how.force):
         raise OutputError(str(output), "exists already", "add --resume, or --force to start again")
     return output
+
+
+def _check_cluster(how: SweepOptions) -> None:
+    """Refuse a cluster that cannot be.
+
+    Raises:
+        UsageError: two are asked for, threads as well, or the package is not there.
+    """
+    given = [name for name in ("scheduler", "workers", "threads") if getattr(how, name) is not None]
+    if len(given) > 1:
+        fault = f"--{given[0]} and --{given[1]} say differently where rows are answered"
+        raise UsageError(f"--{given[1]}", fault, "leave one of them out")
+    if given in (["scheduler"], ["workers"]) and find_spec("distributed") is None:
+        remedy = "install it: pip install 'obbtree[distributed]'"
+        raise UsageError(f"--{given[0]}", "needs the package distributed", remedy)
 
 
 def _sweep(asked: Asked, name: str, how: SweepOptions, output: Path) -> tuple[Record, Swept]:
@@ -118,7 +153,7 @@ def _sweep(asked: Asked, name: str, how: SweepOptions, output: Path) -> tuple[Re
     from obbcli.report.sweep import Swept
     from obbcli.sweeps.queries import opened
     from obbcli.sweeps.results_file import opened_results
-    from obbcli.sweeps.stream import answered, started
+    from obbcli.sweeps.stream import started
 
     setting = _setting(asked)
     with ExitStack() as stack:
@@ -127,21 +162,37 @@ def _sweep(asked: Asked, name: str, how: SweepOptions, output: Path) -> tuple[Re
         files = _read(asked)
         header = _header(asked, setting, files, queries)
         start = time.perf_counter()
+        answer = stack.enter_context(_answerer(how, (files[0].tree, files[1].tree), setting))
+        ready = time.perf_counter()
         with writing(output):
             results = stack.enter_context(opened_results(output, header, resumed=how.resume))
-        trees = files[0].tree, files[1].tree
         with _keeping(output, results):
             left = islice(rows, results.row_count, None)
-            blocks = answered(trees, left, setting, thread_count(how.threads))
             with counting(wanted=asked.common.shows_progress) as show:
-                for block in blocks:
+                for block in answer(left):
                     with writing(output):
                         results.append(block)
                     show(queries.share, results.row_count - results.resumed_from)
     loads = sum({id(file): file.seconds for file in files}.values())
-    times = {"load": loads, "query": time.perf_counter() - start}
+    times = {"load": loads, "query": time.perf_counter() - ready}
+    if how.workers is not None or how.scheduler is not None:
+        times["cluster"] = ready - start
     tally = dict(results.tally)
     return header, Swept(str(output), results.row_count, results.resumed_from, tally, times)
+
+
+@contextmanager
+def _answerer(how: SweepOptions, trees: Trees, setting: Setting) -> Iterator[Answerer]:
+    """Give what turns rows into results: this process, or a cluster."""
+    if how.workers is None and how.scheduler is None:
+        from obbcli.sweeps.stream import answered
+
+        yield partial(answered, trees, setting=setting, threads=thread_count(how.threads))
+        return
+    from obbcli.sweeps.cluster import answered_by, connected
+
+    with connected(how.scheduler, how.workers) as client:
+        yield partial(answered_by, client, trees, setting=setting)
 
 
 def _setting(asked: Asked) -> Setting:
