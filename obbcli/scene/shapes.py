@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from obbcli.mesh import Mesh, load_mesh
 from obbcli.motion import Body, Motion, PathMotion
 from obbcli.question import pivot_of
+from obbcli.scene.heads import TreeHead
 from obbcli.scene.results import BodyStats
 from obbcli.tree import ObbTree, begins_as_tree
 
@@ -28,11 +29,11 @@ class Shapes:
 
     def __init__(self, *, verify: bool = True) -> None:
         self._verify = verify
-        self._loaded: dict[Hashable, Mesh | ObbTree] = {}
+        self._loaded: dict[Hashable, Mesh | TreeHead] = {}
         self._trees: dict[Hashable, ObbTree] = {}
 
-    def load(self, shape: Shape) -> Mesh | ObbTree:
-        """Return a shape of which bounds and centroid are known; of a tree file little is read.
+    def load(self, shape: Shape) -> Mesh | ObbTree | TreeHead:
+        """Return what bounds and centroid are known of; of a tree file that is its header.
 
         Raises:
             MeshError: a mesh cannot be read or is refused.
@@ -46,7 +47,7 @@ class Shapes:
         if found is None:
             assert isinstance(shape, (str, os.PathLike))
             if begins_as_tree(Path(shape)):
-                found = ObbTree.open(shape, verify=self._verify)
+                found = TreeHead(shape, verify=self._verify)
             else:
                 found = load_mesh(shape, hashed=False)
             self._loaded[key] = found
@@ -63,7 +64,8 @@ class Shapes:
             key = _key(body.shape)
             tree = self._trees.get(key)
             if tree is None:
-                tree = self._trees[key] = ObbTree.build(shape)
+                tree = shape.open() if isinstance(shape, TreeHead) else ObbTree.build(shape)
+                self._trees[key] = tree
             shape = tree
         motion = body.motion
         is_path = isinstance(motion, PathMotion)
@@ -79,6 +81,8 @@ class Shapes:
         key = _key(shape)
         made = shape if isinstance(shape, (Mesh, ObbTree)) else self._loaded.get(key)
         made = self._trees.get(key, made)
+        if isinstance(made, TreeHead):
+            return BodyStats(body.name, made.triangle_count, 0, 0, made.node_count)
         if made is None:
             return BodyStats(body.name, None, 0, 0, None)
         if isinstance(made, ObbTree):

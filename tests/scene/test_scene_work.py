@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import os
+import resource
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +28,7 @@ from obbcli import (
     SceneBody,
     SceneError,
     Status,
+    TreeFileError,
 )
 from obbcli.scene.earliest import FirstContacts
 
@@ -87,10 +90,37 @@ def test_bodies_that_nothing_comes_near_are_known_by_their_bounds_alone(blobs: P
     assert len(list(contacts)) == 1
 
     *bodies, alone = contacts.stats.bodies
-    assert alone.nodes_built < 100 < alone.nodes_possible == 1999
-    assert alone.triangles_loaded == 0
+    assert (alone.triangle_count, alone.nodes_possible) == (2000, 1999)
+    assert (alone.triangles_loaded, alone.nodes_built) == (0, 0)
     assert all(body.triangles_loaded > 0 for body in bodies)
     assert contacts.stats.apart_by_bounds == 2
+
+
+def test_more_tree_files_than_can_be_open_are_asked_about(blobs: Path) -> None:
+    data = (blobs / "blob.obbt").read_bytes()
+    bodies = {}
+    for k in range(64):
+        (blobs / f"{k}.obbt").write_bytes(data)
+        # The first two are near each other.
+        bodies[str(k)] = Body(blobs / f"{k}.obbt", Pose(translation=[9 * k - 7 * (k == 1), 0, 0]))
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    used = len(os.listdir("/dev/fd"))  # noqa: PTH208  # names of descriptors
+    resource.setrlimit(resource.RLIMIT_NOFILE, (used + 16, limits[1]))
+    try:
+        found = list(Scene(bodies).first_contacts())
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+
+    assert [(one.body_a, one.body_b) for one in found] == [("0", "1")]
+
+
+def test_tree_file_that_changes_meanwhile_is_refused(blobs: Path) -> None:
+    tree = blobs / "blob.obbt"
+    contacts = Scene(row(tree, 2, 2.5, linear_velocity=[1, 0, 0])).first_contacts()
+    ObbTree.build(CUBE).save(tree)
+
+    with pytest.raises(TreeFileError, match=r"blob\.obbt: was written to since its bounds"):
+        list(contacts)
 
 
 def test_trees_over_meshes_are_begun_when_they_are_needed(blobs: Path) -> None:
