@@ -184,6 +184,20 @@ def test_static_bodies_and_ignored_groups_are_left_out() -> None:
     assert [(a, b) for a, b, _ in found] == expected
 
 
+def test_many_static_bodies_meet_what_moves_and_each_other_not() -> None:
+    static = [Swept(k, 0, 1, (3 * k, 0, 0), (3 * k + 4, 1, 1), (0, 0, 0)) for k in range(40)]
+    mover = Swept(40, 0, 1, (0, 2, 0), (9, 3, 1), (0, -2, 0))
+    walls = [True] * 40
+
+    found = pairs_of([*static, mover], static=[*walls, False])
+
+    assert found == [(k, 40, 0.5) for k in range(4)]
+    ignored = [[False, True], [True, False]]
+    groups = [1] * 2 + [0] * 38 + [1]
+    found = pairs_of([*static, mover], static=[*walls, False], groups=groups, ignored=ignored)
+    assert found == [(0, 40, 0.5), (1, 40, 0.5)]
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e308])
 @pytest.mark.parametrize("column", range(9))
 def test_what_is_not_finite_may_be_anywhere(column: int, bad: float) -> None:
