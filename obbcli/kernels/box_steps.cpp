@@ -116,11 +116,27 @@ Sides sides_of(const LaneMotion& motion, const BasicObb<Four>& boxes, const Movi
 
 } // namespace
 
+OBB_WIDE void set_turns(LaneMotion& motion, const Turn& a, const Turn& b) {
+    const Four sine = halves(a.sine, b.sine), cosine = halves(a.cosine, b.cosine);
+    const Vector3<Four> k = motion.axis;
+    const Vector3<Four> s = sine * k, v = (1.0 - cosine) * k;
+    const std::array<Vector3<Four>, 3> spun{
+        {{cosine + v.x * k.x, v.x * k.y - s.z, v.x * k.z + s.y},
+         {v.x * k.y + s.z, cosine + v.y * k.y, v.y * k.z - s.x},
+         {v.x * k.z - s.y, v.y * k.z + s.x, cosine + v.z * k.z}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            motion.matrix[i][j] = dot(spun[i], motion.columns[j]);
+        }
+        motion.shift[i] = dot(spun[i], motion.offset);
+    }
+}
+
 OBB_WIDE std::array<double, 2> times_apart(const LaneMotion& motion, const BasicObb<Four>& boxes,
-                                           const MovingFrame& frame) {
+                                           const MovingFrame& frame, double wanted) {
     const double speeds = frame.spin_a->speed() + frame.spin_b->speed();
-    // Circles say more than parabolas only where much turning is left.
-    const bool is_long = speeds * frame.remaining > 0.5;
+    // Circles say more than parabolas only where much turning is asked about, or left at all.
+    const bool is_long = speeds * wanted > 0.5 || speeds * frame.remaining > 8;
     const Sides s = sides_of(motion, boxes, frame, is_long);
     const Vector3<Four> h = boxes.half_extents;
     Four longest = every(0.0, h.x);

@@ -1,6 +1,8 @@
 // What a contact query does with pairs of boxes: pushes them on, opens them, for a while.
 #include "contact_query.hpp"
 
+#include "scale.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +31,7 @@ double ContactQuery::window(const Entry& entry) const {
 // opened for a while, and longer each time that it has not parted since; then it is looked at as a
 // whole again, unless all its parts were proven apart for good.
 void ContactQuery::close_after(Entry& entry, double wide) {
-    const double stop = entry.time + std::ldexp(wide, static_cast<int>(entry.reopened));
+    const double stop = entry.time + wide * power_of_two(static_cast<int>(entry.reopened));
     if (!(stop > entry.time) || !(stop + 2 * (stop - entry.time) < entry.end)) {
         return; // of points, say
     }
@@ -74,13 +76,20 @@ void ContactQuery::place(const std::array<NodeRef, 2>& a, const std::array<NodeR
     };
     place_boxes(*motion_, {node(a_, a[0]), node(a_, a[1]), node(b_, b[0]), node(b_, b[1])},
                 *boxes_);
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (a[k].is_triangle()) {
-            set_lane(*boxes_, k, a_.box(a[k]));
-        }
-        if (b[k].is_triangle()) {
-            set_lane(*boxes_, 2 + k, b_.box(b[k]));
-        }
+    place_triangles(a_, a, 0);
+    place_triangles(b_, b, 2);
+}
+
+// Boxes around what has none of its own; around the same triangle twice, one.
+void ContactQuery::place_triangles(const MovingTree& body, const std::array<NodeRef, 2>& parts,
+                                   std::size_t lane) {
+    const auto is_triangle = [&](std::size_t k) { return parts[k].is_triangle(); };
+    if (is_triangle(0)) {
+        set_lane(*boxes_, lane, body.box(parts[0]));
+    }
+    if (is_triangle(1)) {
+        const bool is_same = is_triangle(0) && parts[0].begin == parts[1].begin;
+        set_lane(*boxes_, lane + 1, is_same ? obb::lane(*boxes_, lane) : body.box(parts[1]));
     }
 }
 
@@ -107,7 +116,8 @@ void ContactQuery::open(Entry entry) {
         if (i == begin && !is_translation_) {
             close_after(entry, window(entry));
         }
-        const std::array<double, 2> steps = times_apart(*motion_, *boxes_, now);
+        const std::array<double, 2> steps =
+            times_apart(*motion_, *boxes_, now, entry.end - entry.time);
         for (std::uint32_t k = 0; k <= last - i; ++k) {
             ++counts_.box_tests;
             if (const std::optional<double> time = later(entry, steps[k])) {
@@ -123,8 +133,8 @@ double ContactQuery::step_of_boxes(const Entry& entry, double margin) {
     set_time(entry.time);
     ++counts_.box_tests;
     place({entry.a, entry.a}, {entry.b, entry.b});
-    return times_apart(*motion_, *boxes_,
-                       frame(a_.box_error() + b_.box_error() + margin, entry.time))[0];
+    const MovingFrame now = frame(a_.box_error() + b_.box_error() + margin, entry.time);
+    return times_apart(*motion_, *boxes_, now, entry.end - entry.time)[0];
 }
 
 // A node that stands for what it holds: pushed on as long as the boxes are apart.

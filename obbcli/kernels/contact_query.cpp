@@ -83,17 +83,22 @@ void ContactQuery::set_motion() {
     motion_->square = (1 + 0x1p-40) * motion_->speed * motion_->speed;
     motion_->is_still = motion_->speed == every(0.0, motion_->speed);
     motion_->node_scale = halves(a_.node_scale(), b_.node_scale());
+    for (std::size_t j = 0; j < 3; ++j) {
+        motion_->columns[j] = halves(a_.rotation().column(j), b_.rotation().column(j));
+    }
+    motion_->offset = halves(a_.offset(), b_.offset());
     const double skew = std::max(a_.skew(), b_.skew());
     motion_->skew = every(skew, motion_->speed);
 }
 
 void ContactQuery::set_time(double time) {
+    if (time == time_) {
+        return;
+    }
+    time_ = time;
     a_.set_time(time);
     b_.set_time(time);
-    for (std::size_t i = 0; i < 3; ++i) {
-        motion_->matrix[i] = halves(a_.matrix().rows[i], b_.matrix().rows[i]);
-    }
-    motion_->shift = halves(a_.shift(), b_.shift());
+    set_turns(*motion_, a_.turn(), b_.turn());
 }
 
 MovingFrame ContactQuery::frame(double absolute, double time) const {
@@ -139,8 +144,9 @@ void ContactQuery::push(const Entry& entry) {
 }
 
 bool ContactQuery::advance(std::uint64_t max_pops, double until) {
+    const double last = std::ldexp(until, -time_exponent_);
     for (; max_pops > 0; --max_pops) {
-        if (has_ended() || is_ready() || lower_bound() > until) {
+        if (has_ended() || is_ready() || lower_bound_ > last) {
             break;
         }
         const Entry entry = queue_.pop();

@@ -115,6 +115,8 @@ class ContactQuery {
     [[nodiscard]] double window(const Entry& entry) const;
     void close_after(Entry& entry, double wide);
     void place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b);
+    void place_triangles(const MovingTree& body, const std::array<NodeRef, 2>& parts,
+                         std::size_t lane);
     [[nodiscard]] double step_of_boxes(const Entry& entry, double margin);
     [[nodiscard]] bool is_over(const Entry& entry);
     void meet_triangles(const Entry& entry);
@@ -151,6 +153,7 @@ class ContactQuery {
     Vec3 pivot_between_{0, 0, 0}, closing_velocity_{0, 0, 0};
     double relative_ = 0, between_error_ = 0;
     bool is_translation_ = false;
+    double time_ = -1; // that the bodies are at
 
     TimeQueue<Entry> queue_;
     std::vector<bool> is_needed_; // of windows: whether not all in it was proven apart for good

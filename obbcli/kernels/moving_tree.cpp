@@ -69,17 +69,6 @@ void MovingTree::set_units(int length_exponent, int time_exponent) {
     const Vec3 translation = scaled(pose_.translation, -length_exponent);
     offset_ = translation - pivot_;
     box_error_ = 32 * kUnitRoundoff * (4 * node_scale_ + norm_1(translation) + norm_1(pivot_));
-    time_ = -1;
-}
-
-void MovingTree::set_time(double time) {
-    if (time == time_) {
-        return;
-    }
-    time_ = time;
-    spun_ = spin_.matrix(time);
-    matrix_ = product(spun_, pose_.rotation);
-    shift_ = spun_ * offset_;
 }
 
 Obb MovingTree::box(const NodeRef& ref) const {
@@ -87,10 +76,11 @@ Obb MovingTree::box(const NodeRef& ref) const {
         return box_around(triangle(ref));
     }
     const Node& node = tree_->node(ref);
-    Obb box{matrix_ * (node_scale_ * node.center) + shift_, axes_of(node.rotation),
+    const Mat3 spun = spin_.matrix(turn_), matrix = product(spun, pose_.rotation);
+    Obb box{matrix * (node_scale_ * node.center) + spun * offset_, axes_of(node.rotation),
             node_scale_ * half_extents_of(node)};
     for (Vec3& axis : box.axes) {
-        axis = matrix_ * axis;
+        axis = matrix * axis;
     }
     return box;
 }
@@ -101,9 +91,10 @@ Triangle MovingTree::posed_triangle(const NodeRef& ref) const {
 }
 
 Triangle MovingTree::triangle(const NodeRef& ref) const {
+    const Mat3 spun = spin_.matrix(turn_);
     Triangle t = posed_triangle(ref);
     for (Vec3& v : t) {
-        v = spun_ * (scaled(v, -length_exponent_) - pivot_);
+        v = spun * (scaled(v, -length_exponent_) - pivot_);
     }
     return t;
 }

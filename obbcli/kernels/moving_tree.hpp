@@ -36,11 +36,13 @@ class MovingTree {
     // Bounds how far from orthonormal the axes of boxes are once turned.
     [[nodiscard]] double skew() const { return skew_; }
 
+    // The tree at time 0 in coordinates about the pivot: x -> rotation * x + offset.
+    [[nodiscard]] const Mat3& rotation() const { return pose_.rotation; }
+    [[nodiscard]] Vec3 offset() const { return offset_; }
+
     // All that follows is at this time.
-    void set_time(double time);
-    // From tree coordinates to those about the pivot: x -> matrix * x + shift.
-    [[nodiscard]] const Mat3& matrix() const { return matrix_; }
-    [[nodiscard]] Vec3 shift() const { return shift_; }
+    void set_time(double time) { turn_ = spin_.turn(time); }
+    [[nodiscard]] const Turn& turn() const { return turn_; }
     [[nodiscard]] Obb box(const NodeRef& ref) const;
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
 
@@ -59,10 +61,7 @@ class MovingTree {
     double node_scale_ = 1;
     Vec3 pivot_{0, 0, 0};  // scaled
     Vec3 offset_{0, 0, 0}; // of the pose, from the pivot
-    double time_ = -1;
-    Mat3 spun_ = Mat3::identity();   // the spin alone
-    Mat3 matrix_ = Mat3::identity(); // the spin after the pose
-    Vec3 shift_{0, 0, 0};            // the offset, spun
+    Turn turn_;
 };
 
 // A box around a triangle, for tests that take boxes only.

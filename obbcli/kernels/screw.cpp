@@ -30,18 +30,20 @@ Spin::Spin(Vec3 velocity) : velocity_(velocity) {
     axis_ = {w.x / root, w.y / root, w.z / root};
 }
 
-Mat3 Spin::matrix(double time) const {
+Turn Spin::turn(double time) const {
     if (is_still()) {
-        return Mat3::identity();
+        return {};
     }
     const DoubleDouble angle = two_product(speed_.high, time);
     const double rest = angle.low + speed_.low * time;
     const double sine_high = std::sin(angle.high), cosine_high = std::cos(angle.high);
-    const double sine = sine_high + cosine_high * rest;
-    const double cosine = cosine_high - sine_high * rest;
-    const double versine = 1 - cosine;
+    return {sine_high + cosine_high * rest, cosine_high - sine_high * rest};
+}
+
+Mat3 Spin::matrix(const Turn& turn) const {
+    const double cosine = turn.cosine, versine = 1 - cosine;
     const Vec3 k = axis_;
-    const Vec3 s = sine * k;
+    const Vec3 s = turn.sine * k;
     const Vec3 v = versine * k;
     return {{Vec3{cosine + v.x * k.x, v.x * k.y - s.z, v.x * k.z + s.y},
              Vec3{v.x * k.y + s.z, cosine + v.y * k.y, v.y * k.z - s.x},

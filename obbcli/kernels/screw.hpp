@@ -15,6 +15,11 @@ struct Screw {
     friend bool operator==(const Screw&, const Screw&) = default;
 };
 
+// How far a body has turned.
+struct Turn {
+    double sine = 0, cosine = 1;
+};
+
 // The turning part of a motion.
 class Spin {
   public:
@@ -26,9 +31,10 @@ class Spin {
     [[nodiscard]] Vec3 axis() const { return axis_; } // unit; zero where still
     [[nodiscard]] double speed() const { return speed_.high; }
 
-    // The rotation matrix at `time`. As a map it is off by at most kMatrixError, however many turns
-    // that is: the angle is kept in twice the digits until sine and cosine are taken.
-    [[nodiscard]] Mat3 matrix(double time) const;
+    // The rotation by `time`. As a map its matrix is off by at most kMatrixError, however many
+    // turns that is: the angle is kept in twice the digits until sine and cosine are taken.
+    [[nodiscard]] Turn turn(double time) const;
+    [[nodiscard]] Mat3 matrix(const Turn& turn) const;
 
     // Sine and cosine are within 1 ulp (a test asks the platform's library) and lose another u to
     // what is left of the angle: 2 u each, 3 u for 1 - cos. In c 1 + s [k] + v k k^T that makes
