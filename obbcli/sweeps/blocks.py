@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 ERROR = "error"
 """How tallies count rows that ask nothing, beside the words of statuses."""
+# Made once: json.dumps would make one a row.
+_encode = json.JSONEncoder(allow_nan=False).encode
 SAMPLED = "separated as sampled"
 """How they count rows that are separated, but not proven to be."""
 
@@ -84,4 +86,4 @@ def tallied(result: Mapping[str, Any]) -> str:
 
 def line_of(row: Row, result: Mapping[str, Any]) -> str:
     """Return a row of the results."""
-    return json.dumps({"row": row.number, "id": row.identity, **result}, allow_nan=False) + "\n"
+    return _encode({"row": row.number, "id": row.identity, **result}) + "\n"

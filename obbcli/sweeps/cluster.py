@@ -149,7 +149,7 @@ def answered_by(
         ObbError: the rows cannot be read on, a tree is damaged, or the cluster is gone.
     """
     tasks = _Tasks(client, trees, setting)
-    chunks = Chunks()
+    chunks = Chunks(1)
     pending: deque[tuple[Sequence[Row], Any]] = deque()
     try:
         while True:

@@ -6,7 +6,7 @@ import csv
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import ObbError
-from obbcli.sweeps.fields import FIELDS, VECTORS, Row, number_in, unknown, vector_in
+from obbcli.sweeps.fields import FIELDS, VECTORS, Row, number_in, plain_vector, unknown, vector_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -70,10 +70,13 @@ class _Columns(NamedTuple):
                 read = number_in if name == "duration" else vector_in
                 values[name] = read(text, place)
         for name, places in self.parted.items():
-            texts = [cells[index].strip() for index in places]
-            if any(texts):
+            texts = [cells[index] for index in places]
+            known = plain_vector(texts)
+            if known is not None:
+                values[name] = known
+            elif any(text.strip() for text in texts):
                 x, y, z = (
-                    number_in(text, f"{where}, column {name}_{axis}")
+                    number_in(text.strip(), f"{where}, column {name}_{axis}")
                     for text, axis in zip(texts, _AXES, strict=True)
                 )
                 values[name] = x, y, z

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from obbcli.errors import MotionError, ObbError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 _OF_A = ("vel", "omega", "pivot", "translate", "rotate")
 VECTORS = (*_OF_A, *(f"{name}_b" for name in _OF_A))
@@ -45,10 +45,10 @@ def number_in(text: str, where: str) -> float:
     """
     try:
         # Python's own grouping of digits is a slip of the finger elsewhere.
-        value = math.nan if "_" in text else float(text)
+        value = nan if "_" in text else float(text)
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+        value = nan
+    if not isfinite(value):
         raise MotionError(where, f"{_short(text)} is not a finite number", "correct it")
     return value
 
@@ -60,12 +60,28 @@ def vector_in(text: str, where: str) -> Vector:
         MotionError: they are not.
     """
     words = text.split()
+    known = plain_vector(words)
+    if known is not None:
+        return known
     if len(words) != 3:
         raise MotionError(
             where, f"{_short(text)} is not three numbers", "separate them with spaces"
         )
     x, y, z = (number_in(word, where) for word in words)
     return x, y, z
+
+
+def plain_vector(texts: Sequence[str]) -> Vector | None:
+    """Return three finite numbers, or None: then it is for the other readers to say what is wrong.
+
+    Most cells are fine, and to name the place of each takes longer than to read it.
+    """
+    try:
+        x, y, z = map(float, texts)
+    except ValueError:
+        return None
+    is_plain = isfinite(x) and isfinite(y) and isfinite(z) and "_" not in "".join(texts)
+    return (x, y, z) if is_plain else None
 
 
 def number_of(value: object, where: str) -> float:
@@ -78,8 +94,8 @@ def number_of(value: object, where: str) -> float:
         try:
             number = float(value)
         except OverflowError:
-            number = math.inf
-        if math.isfinite(number):
+            number = inf
+        if isfinite(number):
             return number
     raise MotionError(where, f"{_short(value)} is not a finite number", "correct it")
 

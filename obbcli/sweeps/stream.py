@@ -18,20 +18,26 @@ if TYPE_CHECKING:
 
 # s: what an interruption may lose, and how often progress shows.
 _CHUNK_SECONDS = 0.5
-_FIRST, _MOST = 16, 8192
+_MOST = 8192
 _GROWTH = 4
 
 
 class Chunks:
-    """How many rows to ask at a time: as many as take about half a second."""
+    """How many rows to ask at a time: as many as take about half a second.
 
-    def __init__(self) -> None:
-        self.row_count = _FIRST
+    Few at first, for nobody knows how long they take.
+
+    Args:
+        least: how many there are at least.
+    """
+
+    def __init__(self, least: int) -> None:
+        self._least = self.row_count = least
 
     def measured(self, row_count: int, seconds: float) -> None:
         """Take note of how long some rows took, s."""
         fitting = int(_CHUNK_SECONDS * row_count / max(seconds, 1e-9))
-        self.row_count = max(1, min(fitting, _GROWTH * self.row_count, _MOST))
+        self.row_count = max(self._least, min(fitting, _GROWTH * self.row_count, _MOST))
 
 
 def started(rows: Iterator[Row]) -> Iterator[Row]:
@@ -51,7 +57,7 @@ def answered(trees: Trees, rows: Iterator[Row], setting: Setting, threads: int) 
         TreeFileError: a tree file is damaged.
         ObbError: the rows cannot be read on.
     """
-    chunks = Chunks()
+    chunks = Chunks(threads)
     while some := list(islice(rows, chunks.row_count)):
         start = time.perf_counter()
         yield answer_rows(trees, some, setting, threads)

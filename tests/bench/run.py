@@ -23,6 +23,7 @@ import bench_fits
 import bench_primitives
 import bench_scene
 import bench_static
+import bench_sweep
 import bench_wall
 import moving_tables
 from harness import Row, machine, record, table
@@ -39,6 +40,7 @@ BENCHES = {
     ),
     "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
     "scene": lambda options: bench_scene.run(options.quick),
+    "sweep": lambda options: bench_sweep.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
 }
 TABLES = {"first contact": moving_tables.tables, "fits": bench_fits.tables}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from obbcli.cli.progress import WORTH_A_BAR, bar
+from obbcli.cli.progress import WORTH_A_BAR, bar, counting
 
 
 class Terminal(io.StringIO):
@@ -126,3 +126,32 @@ def test_long_list_shows_the_time_before_which_it_is_known(monkeypatch, obbtree)
 
     assert listed.code == 0
     assert "all contacts known before t = 0.0" in terminal.getvalue()
+
+
+def test_rows_are_counted_with_their_rate_and_the_time_left(monkeypatch):
+    seconds = iter([100.0, 100.0, 104.0])
+    monkeypatch.setattr("obbcli.cli.progress.time.monotonic", lambda: next(seconds, 104.0))
+
+    with redirect_stderr(Terminal()) as terminal, counting(wanted=True) as show:
+        show(0.5, 0)
+        show(0.7, 2000)
+
+    assert "2,000 rows, 500 a second, 6 s left" in terminal.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("stream", "words", "is_drawn"),
+    [
+        (Terminal, (), True),
+        (Terminal, ("--quiet",), False),
+        (Terminal, ("--no-progress",), False),
+        (io.StringIO, (), False),
+    ],
+)
+def test_sweeps_count_their_rows_on_a_terminal(here, obbtree, stream, words, is_drawn):
+    (here / "q.csv").write_text("vel\n1 0 0\n")
+
+    with redirect_stderr(stream()) as terminal:
+        obbtree("sweep", "cube.stl", "apart.obj", "q.csv", "-o", "out.jsonl", *words)
+
+    assert ("1 rows, " in terminal.getvalue()) == is_drawn
