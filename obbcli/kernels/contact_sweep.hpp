@@ -93,7 +93,6 @@ class SweepRow {
     // True when there is an answer. Throws as the queries do.
     bool advance();
     [[nodiscard]] const SweepAnswer& answer() const { return answer_; }
-    [[nodiscard]] bool is_moving() const { return moving_.has_value(); }
 
   private:
     [[nodiscard]] bool moves_nothing() const;

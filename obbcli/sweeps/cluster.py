@@ -6,6 +6,7 @@ tasks, of which a bounded number is under way; whatever a lost worker leaves und
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import signal
 import time
@@ -120,7 +121,7 @@ def connected(address: str | None, workers: int | None) -> Iterator[Any]:
         stack.enter_context(client)
         try:
             client.wait_for_workers(1, timeout=_WORKER_PATIENCE)
-        except TimeoutError as fault:
+        except (TimeoutError, asyncio.TimeoutError) as fault:  # one and the same from 3.11 on
             remedy = f"start some with 'dask worker {address}'"
             raise ObbError(f"scheduler {address}", "has no workers", remedy) from fault
         yield client

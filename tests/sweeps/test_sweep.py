@@ -141,6 +141,33 @@ def test_limits_in_the_middle_of_slices_end_at_the_same_pop(sheets, limit):
         assert_is(row, answer)
 
 
+def test_bodies_nearer_than_the_clearance_are_in_contact_at_the_start(sheets):
+    plain, above = sheets
+    accuracy = Accuracy(clearance=0.01)
+
+    rows = sweep(plain, above, None, [[0, 0, 1, 0, 0, 0], [0, 0, 1, 1, 0, 0]], 1.0, accuracy)
+
+    assert set(rows["status"]) == {"overlap_at_start"}
+    for row, spin in zip(rows, (0, 1), strict=True):
+        body = Body(above.shape, above.pose, Motion((0, 0, 1), (spin, 0, 0)))
+        assert_is(row, first_contact(plain, body, 1.0, accuracy))
+
+
+@pytest.mark.parametrize("pivots_alike", [True, False])
+def test_bodies_that_move_alike_are_asked_at_the_start_alone(pair, pivots_alike):
+    motions = moving(3)[0] + 1
+    others = motions if pivots_alike else motions + np.repeat([0, 1], [6, 3])
+    body = Body(pair[1], APART)
+
+    rows = sweep(pair[0], body, motions, others)
+
+    at_rest = first_contact(pair[0], body).stats.pops
+    assert set(rows["pops"] > at_rest) == {not pivots_alike}
+    for row, a, b in zip(rows, motions, others, strict=True):
+        bodies = Body(pair[0], motion=motion_of(a)), Body(pair[1], APART, motion_of(b))
+        assert_is(row, first_contact(*bodies))
+
+
 def test_motions_come_as_objects_as_arrays_or_as_one_for_all(pair):
     motions_a, motions_b = moving(6)
     body = Body(pair[1], APART)

@@ -1,5 +1,6 @@
 // Questions from several threads to trees that grow, or are read, as they are asked, for the thread
 // sanitizer: every answer must be that of one thread and whole trees.
+#include "contact_sweep.hpp"
 #include "crc32.hpp"
 #include "distance_query.hpp"
 #include "file_tree.hpp"
@@ -60,8 +61,27 @@ obb::Pose pose(std::size_t index) {
 struct Answer {
     std::vector<obb::TrianglePair> pairs;
     double low, high;
+    obb::SweepStatus status;
+    double first_contact;
+    std::uint64_t pops;
     friend bool operator==(const Answer&, const Answer&) = default;
 };
+
+// A turning b comes closer to a, or passes it.
+obb::SweepAnswer meet(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
+    obb::Placement placement{{}, pose(index)};
+    placement.b.translation.x += 3;
+    const double side = 0.4 * static_cast<double>(index);
+    const obb::SweepQuestion question{
+        {}, {{-4, side, 0}, {1, 2, 0}, placement.b.translation}, 1, 0};
+    const obb::SweepOptions options{-1, 0, false, ~0U, ~0U, ~0ULL, 1e9};
+    obb::SweepRow row(a, b, placement, question, options, nullptr);
+    while (!row.advance()) {
+    }
+    obb::SweepAnswer answer = row.answer();
+    answer.low = answer.status == obb::SweepStatus::kContact ? answer.low : -1;
+    return answer;
+}
 
 Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
     obb::StaticQuery all(a, {}, b, pose(index), {.all_pairs = true});
@@ -77,7 +97,13 @@ Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
     while (!nearest.advance(1000)) {
     }
     const obb::DistanceBounds bounds = nearest.bounds();
-    return {{all.pairs().begin(), all.pairs().end()}, bounds.low, bounds.high};
+    const obb::SweepAnswer met = meet(a, b, index);
+    return {{all.pairs().begin(), all.pairs().end()},
+            bounds.low,
+            bounds.high,
+            met.status,
+            met.low,
+            met.counts.pops};
 }
 
 // Asks from several threads at once while another one makes the rest of tree a.
