@@ -52,6 +52,7 @@ def test_tree_file_round_trip_keeps_every_byte(name: str, tmp_path: Path) -> Non
 
     assert first.read_bytes() == second.read_bytes()
     assert first.stat().st_size == written
+    assert tree.to_bytes() == again.to_bytes() == first.read_bytes()
     assert again.nbytes == tree.nbytes
     assert np.array_equal(again.mesh.triangles, tree.mesh.triangles)
     again.check()
