@@ -33,7 +33,8 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 ANY_LINES = "..."
 # A time, or the number of tests that an answer took, or of the boxes made for it.
 VARYING = re.compile(
-    r"\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+"
+    # What something took, and not at what time of the motion (`t = 0.5 s`) it is.
+    r"(?<!t = )(?<![\d.])\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+"
     r"|(?<=triangle tests )[\d,]+( \(\S+ in exact)?"
     r"|(?:(?<=boxes built )|(?<=of A, ))[\d,]+(?= of)"
 )
