@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 from cube_files import cube, obj, stl
 
@@ -14,6 +15,9 @@ from obbcli.cli import main
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+
+
+SWEEP = ("sweep", "cube.stl", "apart.obj", "q.csv", "--duration", "2")
 
 
 @dataclass(frozen=True)
@@ -55,3 +59,36 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "apart.obj").write_text(obj(cube((1 + 2**-40, 0, 0))))
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def swept(path: Path) -> list[Any]:
+    """Return the rows of a results file."""
+    header, *rows = [json.loads(line) for line in path.read_text().splitlines()]
+    assert header["schema"] == "obbtree/sweep/1"
+    assert [row["row"] for row in rows] == list(range(len(rows)))
+    return rows
+
+
+@pytest.fixture
+def ask_rows(here: Path, obbtree: Callable[..., Ended]) -> Callable[..., Any]:
+    """Return what sweeps the rows of a text and gives how that ended, and the results."""
+
+    def run(text: str | bytes, *words: object, name: str = "q.csv") -> Any:
+        (here / name).write_bytes(text.encode() if isinstance(text, str) else text)
+        ended = obbtree("sweep", "cube.stl", "apart.obj", name, "-o", "out.jsonl", *words)
+        path = here / "out.jsonl"
+        return ended, swept(path) if path.exists() else None
+
+    return run
+
+
+@pytest.fixture
+def asked(here: Path, obbtree: Callable[..., Ended]) -> bytes:
+    """Write questions, some of them bad, and return the results of a sweep that nothing stopped."""
+    velocities = np.random.default_rng(5).normal((1, 0, 0), size=(300, 3))
+    rows = [f"{k},{' '.join(map(repr, v))}" for k, v in enumerate(velocities.tolist())]
+    rows[40] = "40,nowhere"
+    (here / "q.csv").write_text("\n".join(["id,vel", *rows, ""]))
+    ended = obbtree(*SWEEP, "-o", "whole.jsonl")
+    assert ended.code == 3
+    return (here / "whole.jsonl").read_bytes()
