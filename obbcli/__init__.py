@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from obbcli.query import collide, triangle_pairs
     from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
     from obbcli.scene import Scene, SceneBody, SceneContact
+    from obbcli.study import Stability, stability
     from obbcli.sweeps import sweep
     from obbcli.tree import ObbTree
 
@@ -52,6 +53,7 @@ _HOMES = {
     "SceneBody": "scene",
     "SceneContact": "scene",
     "SceneError": "errors",
+    "Stability": "study",
     "Status": "verdict",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
@@ -60,6 +62,7 @@ _HOMES = {
     "distance": "nearest",
     "first_contact": "contact",
     "load_mesh": "mesh",
+    "stability": "study",
     "sweep": "sweeps",
     "triangle_pairs": "query",
 }
@@ -84,6 +87,7 @@ __all__ = [
     "SceneBody",
     "SceneContact",
     "SceneError",
+    "Stability",
     "Status",
     "TreeFileError",
     "UnresolvedError",
@@ -93,6 +97,7 @@ __all__ = [
     "distance",
     "first_contact",
     "load_mesh",
+    "stability",
     "sweep",
     "triangle_pairs",
 ]

@@ -16,6 +16,7 @@ _COMMANDS = {
     "distance": "distance",
     "scene": "scene",
     "sweep": "sweep",
+    "stability": "stability",
     "build": "build",
     "info": "info",
 }
@@ -30,6 +31,8 @@ obbtree: do these two triangle meshes touch, and when first?
   obbtree scene cell.toml                the same of many bodies, earliest first
   obbtree sweep gear.stl pinion.stl motions.csv -o contacts.jsonl
                                          first-contact, once a row of a file
+  obbtree stability gear.stl pinion.stl --omega 0 0 3
+                                         which answers hold at the extremes?
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 

@@ -25,6 +25,7 @@ class ExitCode(IntEnum):
     INPUT = 3
     UNRESOLVED = 4
     OUTPUT = 5
+    BROKEN = 6
     INTERNAL = 70
     INTERRUPTED = 130
 

@@ -105,6 +105,33 @@ def counting(*, wanted: bool) -> Iterator[Callable[[float, int], None]]:
         yield show
 
 
+@contextmanager
+def trying(count: int, *, wanted: bool) -> Iterator[Callable[[int, str], None]]:
+    """Give what shows how many of so many are tried, what is being tried, and what time is left.
+
+    Args:
+        count: how many there are.
+        wanted: False draws nothing.
+
+    Yields:
+        a function that takes how many are done and what comes next.
+    """
+    if not (wanted and _is_terminal()):
+        yield lambda _done, _name: None
+        return
+    start = time.monotonic()
+    with _progress() as progress:
+        task = progress.add_task("", total=count)
+
+        def show(done: int, name: str) -> None:
+            seconds = time.monotonic() - start
+            left = f", {seconds * (count - done) / done:,.0f} s left" if done else ""
+            text = f"{done} of {count}{left}: {name}"
+            progress.update(task, completed=done, description=text)
+
+        yield show
+
+
 def _is_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
 

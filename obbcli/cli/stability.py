@@ -1,0 +1,89 @@
+"""`obbtree stability`: the same question at the extremes, and which answers hold."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import click
+
+from obbcli.cli.asking import about_two, naming_options
+from obbcli.cli.boundary import ExitCode, UsageError, note
+from obbcli.cli.options import Command
+from obbcli.cli.output import emit
+from obbcli.cli.progress import trying
+
+if TYPE_CHECKING:
+    from obbcli.cli.asking import Asked
+    from obbcli.report.record import Record
+    from obbcli.report.stability import Studied
+    from obbcli.study.battery import Battery
+
+
+@click.command(
+    "stability",
+    cls=Command,
+    short_help="Which answers hold when the question is taken to extremes?",
+    epilog="""\b
+Examples:
+  obbtree stability gear.stl pinion.stl --omega 0 0 0.1
+  obbtree stability arm.stl shelf.obbt --vel 0 0 -50 --duration 3 --json
+""",
+)
+@about_two("Exit with 1 where they touch, 0 where proven apart; 6 where anything is broken.")
+def command(asked: Asked) -> int:
+    """Ask first-contact of A and B again at the extremes, and say which answers hold.
+
+    The world is scaled to the ends of the doubles, shifted, turned and hurried; bodies swapped,
+    triangles reordered, split, repeated and reversed; time scaled and cut; bodies spun and tilted;
+    digits taken away. What may change is bounded by what that did to the input, and beyond it
+    nothing may: exit code 6 says that something did, which is a defect of obbtree. Ctrl-C keeps
+    what was done.
+    """
+    question = asked.question()
+    if question.accuracy.method == "sampled":
+        fault = "proves nothing that could be held to"
+        raise UsageError("--method sampled", fault, "ask for --method certified")
+    files = asked.read()
+    with naming_options(question):
+        from obbcli.study.battery import Battery
+
+        bodies = question.bodies(files)
+        battery = Battery(*bodies, question.duration, question.accuracy)
+        studied = _run(battery, progress=asked.common.shows_progress)
+        setting = asked.setting(files, bodies, question)
+    from obbcli.report.stability import stability_bare, stability_record, stability_tables
+
+    record = stability_record(setting, studied)
+    emit(record, stability_tables, asked.common, bare=stability_bare)
+    if studied.is_interrupted and not asked.common.quiet:
+        note(f"note: interrupted; not tried: {battery.count - len(battery.rows)} extremes")
+    return _exit_code(record["result"], asked=asked.exit_code)
+
+
+def _run(battery: Battery, *, progress: bool) -> Studied:
+    """Try all extremes; after Ctrl-C what was tried by then."""
+    from obbcli.report.stability import Studied
+
+    start = time.perf_counter()
+    is_interrupted = False
+    with trying(battery.count, wanted=progress) as show:
+        try:
+            while not battery.is_finished:
+                show(len(battery.rows), battery.next_extreme)
+                battery.advance()
+        except KeyboardInterrupt:
+            is_interrupted = True
+    spent = time.perf_counter() - start
+    return Studied(battery.result(), battery.count, is_interrupted, spent)
+
+
+def _exit_code(result: Record, *, asked: bool) -> int:
+    if result["interrupted"]:
+        return ExitCode.INTERRUPTED
+    if result["broken_count"]:
+        return ExitCode.BROKEN
+    status = result["answer"]["status"]
+    if status == "unresolved":
+        return ExitCode.UNRESOLVED
+    return ExitCode.CONTACT if asked and status != "separated" else ExitCode.ANSWERED

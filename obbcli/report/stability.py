@@ -1,0 +1,138 @@
+"""The record of `obbtree stability` and its tables."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import fields
+from typing import TYPE_CHECKING, NamedTuple
+
+from obbcli.report.collide import source_rows
+from obbcli.report.record import document, finite
+from obbcli.report.table import Table, count, seconds
+from obbcli.results import Contact
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from obbcli.report.record import Record, Setting
+    from obbcli.study import Row, Stability
+
+_OUTCOMES = ("same", "agrees", "within bound", "unresolved", "refused", "broken")
+_COLUMNS = ("changed", "tried", "same bits", "agree", "in bound", "open", "refused", "broken")
+
+
+class Studied(NamedTuple):
+    """How a study went.
+
+    Attributes:
+        stability: what came out.
+        planned: how many extremes there were to try.
+        is_interrupted: whether Ctrl-C ended it.
+        seconds: s of wall time.
+    """
+
+    stability: Stability
+    planned: int
+    is_interrupted: bool
+    seconds: float
+
+
+def stability_record(setting: Setting, studied: Studied) -> Record:
+    """Return the record of a study."""
+    answer, rows = studied.stability.answer, studied.stability.rows
+    values = {field.name: getattr(answer, field.name) for field in fields(Contact)}
+    a, b = setting.sources
+    result = {
+        "answer": values | {"status": answer.status.value},
+        "extreme_count": studied.planned,
+        "tried_count": len(rows),
+        "broken_count": len(studied.stability.broken),
+        "interrupted": studied.is_interrupted,
+        "families": _families(rows),
+        "rows": [_row_part(row) for row in rows],
+    }
+    return document(
+        "stability",
+        {"a": a._asdict(), "b": b._asdict()},
+        motion=setting.motion,
+        accuracy=setting.accuracy.as_dict(),
+        result=result,
+        stats={"seconds": {"total": studied.seconds}},
+    )
+
+
+def _row_part(row: Row) -> Record:
+    values: Record = {field.name: getattr(row, field.name) for field in fields(row)}
+    values["magnitude"] = finite(row.magnitude)
+    values["bound"] = finite(row.bound)
+    values["status"] = None if row.status is None else row.status.value
+    return values
+
+
+def _families(rows: Sequence[Row]) -> list[Record]:
+    """Return what became of each family, and where it first gave other bits."""
+    families: dict[str, list[Row]] = {}
+    for row in rows:
+        families.setdefault(row.family, []).append(row)
+    parts = []
+    for family, tried in families.items():
+        tally = Counter[str](row.outcome for row in tried)
+        changed = next((row for row in tried if row.outcome != "same"), None)
+        parts.append(
+            {
+                "family": family,
+                "tried_count": len(tried),
+                "outcomes": {name: tally[name] for name in _OUTCOMES},
+                "same_bits_end_at": None if changed is None else changed.extreme,
+                "why": None if changed is None else changed.reason,
+            }
+        )
+    return parts
+
+
+def stability_tables(record: Record) -> list[Table]:
+    """Return the tables of a record: the answer, the families, where bits change, what broke."""
+    result = record["result"]
+    answer, families = result["answer"], result["families"]
+    time = "" if answer["time"] is None else f", t = {answer['time']!r} s"
+    cut = " (interrupted)" if result["interrupted"] else ""
+    heads = [
+        *source_rows(record),
+        ("answer", f"{answer['status']}{time}"),
+        ("extremes", f"{count(result['tried_count'])} of {count(result['extreme_count'])}{cut}"),
+        ("broken", count(result["broken_count"])),
+        ("time", seconds(record["stats"]["seconds"]["total"])),
+    ]
+    tables = [Table(heads)]
+    if families:
+        rows = [
+            (
+                part["family"],
+                count(part["tried_count"]),
+                *(
+                    count(part["outcomes"][name]) if part["outcomes"][name] else ""
+                    for name in _OUTCOMES
+                ),
+            )
+            for part in families
+        ]
+        tables.append(Table(rows, _COLUMNS))
+    ends = [
+        (part["family"], f"{part['same_bits_end_at']}: {part['why']}")
+        for part in families
+        if part["same_bits_end_at"] is not None and part["why"]
+    ]
+    if ends:
+        tables.append(Table(ends, title="where the bits of the answer first change, and why"))
+    broken = [row for row in result["rows"] if not row["held"]]
+    if broken:
+        lines = [(f"{row['family']}, {row['extreme']}", row["reason"]) for row in broken]
+        tables.append(Table(lines, title="BROKEN: what ought to hold and does not"))
+    return tables
+
+
+def stability_bare(record: Record) -> str:
+    """Return how many extremes held and how many did not."""
+    result = record["result"]
+    broken = result["broken_count"]
+    return f"held {result['tried_count'] - broken}\nbroken {broken}\n"
