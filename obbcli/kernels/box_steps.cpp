@@ -8,15 +8,15 @@ namespace {
 constexpr double kAxisError = 0x1p-100;
 
 // What all axes need of the boxes whose axes they are (own) and of the others, across the gap.
-struct Sides {
+struct alignas(kAlignment<Four>) Sides {
     BasicObb<Four> other;
-    std::array<Vector3<Four>, 3> other_velocity; // W x axes of the others
-    std::array<Four, 3> along_own;               // own spin axis . own axes
-    Vector3<Four> other_axis;                    // spin axis of the others
-    Vector3<Four> between, velocity;             // from own to other
-    Vector3<Four> circles;                       // between the circles' centres
-    Vector3<Four> drift;                         // closing velocity of the pivots
-    Four span, other_span;                       // reach of the boxes along their own spin axes
+    std::array<Vector3<Four>, 3> other_velocity;             // W x axes of the others
+    alignas(kAlignment<Four>) std::array<Four, 3> along_own; // own spin axis . own axes
+    Vector3<Four> other_axis;                                // spin axis of the others
+    Vector3<Four> between, velocity;                         // from own to other
+    Vector3<Four> circles;                                   // between the circles' centres
+    Vector3<Four> drift;                                     // closing velocity of the pivots
+    Four span, other_span;     // reach of the boxes along their own spin axes
     Four pull, other_pull;     // |W|^2 times the distance of the farthest point from the axis
     Four radius, other_radius; // that distance
     FourMask other_is_still;
@@ -31,7 +31,7 @@ Four reach(const BasicObb<Four>& box, const Vector3<Four>& n,
 }
 
 // One axis a lane; what the own boxes add along it is known.
-struct OwnReach {
+struct alignas(kAlignment<Four>) OwnReach {
     Four width, velocity_spread;
     Four lever_square; // |n x k|^2 of the own spin axis k, rounded up
 };

@@ -11,11 +11,11 @@ namespace obb {
 // Both bodies' motions at one time, A's in the lower half of the lanes, B's in the upper one.
 struct LaneMotion : LaneFrame { // about the pivots, at the present time
     // Constant.
-    Vector3<Four> velocity; // of the spins
-    Vector3<Four> axis;     // unit; zero where still
-    Four speed, square;     // of the spins; the square rounded up
-    FourMask is_still;
-    Four skew;                            // bounds how far from orthonormal axes of either body are
+    Vector3<Four> velocity;                       // of the spins
+    Vector3<Four> axis;                           // unit; zero where still
+    alignas(kAlignment<Four>) Four speed, square; // of the spins; the square rounded up
+    alignas(kAlignment<Four>) FourMask is_still;
+    alignas(kAlignment<Four>) Four skew;  // bounds how far from orthonormal axes of either body are
     std::array<Vector3<Four>, 3> columns; // of the poses' rotations
     Vector3<Four> offset;                 // of the poses, from the pivots
 };

@@ -29,7 +29,7 @@ constexpr double kTiny = 0x1p-900; // what coordinates and products lose to unde
 // Relative to A's first corner, as LocalPair.
 struct LocalLanes {
     Corners4 a, b; // a[0] is the origin
-    Four extent;
+    alignas(kAlignment<Four>) Four extent;
 };
 
 LocalLanes localized(const TriangleLanes& a, const TriangleLanes& b) {
@@ -40,7 +40,7 @@ LocalLanes localized(const TriangleLanes& a, const TriangleLanes& b) {
                              Four{p.z, q.z, r.z, s.z}};
     };
     const Vector3<Four> origin = gathered(a, 0);
-    std::array<Four, 2> far{};
+    alignas(kAlignment<Four>) std::array<Four, 2> far{};
     for (std::size_t k = 0; k < 3; ++k) {
         pair.a[k] = gathered(a, k) - origin;
         pair.b[k] = gathered(b, k) - origin;
@@ -113,7 +113,7 @@ OBB_WIDE Gaps edge_gaps(const TriangleLanes& a, const TriangleLanes& b) {
         return select(x > zero, one / select(x > zero, x, one), zero);
     };
     Corners4 edges_b;
-    std::array<Four, 3> squares_b, inverse_b;
+    alignas(kAlignment<Four>) std::array<Four, 3> squares_b, inverse_b;
     for (std::size_t j = 0; j < 3; ++j) {
         edges_b[j] = pair.b[(j + 1) % 3] - pair.b[j];
         squares_b[j] = dot(edges_b[j], edges_b[j]);

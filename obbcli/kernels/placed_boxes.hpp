@@ -12,7 +12,7 @@ namespace obb {
 // From the coordinates of either tree to the frame: x -> matrix * (node_scale * x) + shift. A's in
 // the lower half of the lanes, B's in the upper one.
 struct LaneFrame {
-    Four node_scale;
+    alignas(kAlignment<Four>) Four node_scale;
     std::array<Vector3<Four>, 3> matrix; // rows
     Vector3<Four> shift;
 };

@@ -27,8 +27,8 @@ void pose_triangles(const Pose& pose, const FourCorners& corners, FourTriangles&
 }
 
 // For each vertex of a triangle whether it is surely above a plane, and below: all bits or none.
-struct alignas(sizeof(Four)) FourSides {
-    std::array<FourMask, 3> above, below;
+struct FourSides {
+    alignas(kAlignment<Four>) std::array<FourMask, 3> above, below;
 
     [[nodiscard]] PlaneSides lane(std::size_t k) const {
         PlaneSides sides;
