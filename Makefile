@@ -23,7 +23,7 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check lint format-check types stub-check stub bench sanitize sanitize-threads clean
+.PHONY: help demo test check lint format-check types stub-check stub bench sanitize sanitize-threads same-bits clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
@@ -32,6 +32,7 @@ help:
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
+	@echo 'make same-bits that kernels say the same with wide registers and without'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'
 	@echo 'PYTHON=python3.12 chooses the interpreter, CXX=clang++ the compiler.'
@@ -99,6 +100,24 @@ sanitize-threads: .build/growing_trees
 	@if [ -s .venv/compiler ]; then echo 'make sanitize-threads needs a compiler with a thread sanitizer' >&2; exit 1; fi
 	@mkdir -p .build
 	$${CXX:-c++} -std=c++20 -O1 -g -ffp-contract=off -fsanitize=thread -pthread -I$(KERNELS) $(THREAD_TEST) $(THREAD_KERNELS) -o $@
+
+# The kernels as they are, and without wide registers: the same bits.
+LANE_TEST := tests/lanes/lane_answers.cpp
+
+same-bits: .build/lanes/wide .build/lanes/narrow
+	.build/lanes/wide >.build/lanes/wide.txt
+	.build/lanes/narrow >.build/lanes/narrow.txt
+	cmp .build/lanes/wide.txt .build/lanes/narrow.txt
+	@wc -l <.build/lanes/wide.txt | sed 's/$$/ lines of answers are the same with wide registers and without/'
+
+.build/lanes/wide: FLAGS :=
+.build/lanes/narrow: FLAGS := -DOBB_NARROW
+.build/lanes/wide .build/lanes/narrow: $(LANE_TEST) $(SOURCES) | .venv/installed
+	@mkdir -p $@.objects
+	. ./.venv/compiler; printf '%s\n' $(LANE_TEST) $(THREAD_KERNELS) | xargs -n 1 -P "$$(getconf _NPROCESSORS_ONLN)" sh -c \
+	  '$${CXX:-c++} -std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi $(FLAGS) -I$(KERNELS) \
+	     -c "$$0" -o $@.objects/"$$(basename "$$0" .cpp)".o'
+	. ./.venv/compiler; $${CXX:-c++} -pthread $@.objects/*.o -o $@
 
 clean:
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -10,9 +10,10 @@
 #include <limits>
 
 // A function is compiled for wider registers as well, and the loader chooses; both give the same
-// bits. Its callees are drawn into it. Sanitizers come too late for the loader's choice.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) &&             \
-    !defined(__SANITIZE_THREAD__) && defined(__has_attribute)
+// bits. Its callees are drawn into it. Sanitizers come too late for the loader's choice. With
+// OBB_NARROW no register is wider than every machine's, for comparison.
+#if !defined(OBB_NARROW) && defined(__x86_64__) && defined(__gnu_linux__) &&                       \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__has_attribute)
 #if __has_attribute(target_clones) && __has_attribute(flatten)
 #define OBB_WIDE [[gnu::flatten, gnu::target_clones("avx2", "default")]]
 #endif

@@ -17,7 +17,7 @@
 // A pass is written once, as a template over the width of registers in bytes. Every machine has
 // registers of 16 bytes; wider ones are used where the processor at hand has them. Neither fuses
 // multiplications and additions.
-#if defined(__x86_64__) && defined(__GNUC__)
+#if !defined(OBB_NARROW) && defined(__x86_64__) && defined(__GNUC__)
 #define OBB_WIDE_REGISTERS __attribute__((target("avx2"), flatten))
 #define OBB_HAS_WIDE 1
 #else
