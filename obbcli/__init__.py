@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
+    from obbcli.body import Body
     from obbcli.contact import Query, first_contact
     from obbcli.errors import (
         MeshError,
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
         UnresolvedError,
     )
     from obbcli.mesh import Mesh, load_mesh
-    from obbcli.motion import Body, Motion, Pose
+    from obbcli.motion import Motion, Pose
     from obbcli.nearest import distance
     from obbcli.pairs import contacts
     from obbcli.query import collide, triangle_pairs
@@ -35,7 +36,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Accuracy": "accuracy",
-    "Body": "motion",
+    "Body": "body",
     "Collision": "verdict",
     "Contact": "results",
     "Distance": "results",

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
+from obbcli.body import as_body
 from obbcli.legs import LegQueries, legs_of
-from obbcli.motion import PathMotion, as_body
+from obbcli.motion import PathMotion
 from obbcli.question import (
     POPS_A_SLICE,
     damaged,
@@ -33,7 +34,7 @@ from obbcli.solids import Containment
 from obbcli.touching import answer_at_rest, boxes_at_start, contact_at_start, contact_of, unresolved
 
 if TYPE_CHECKING:
-    from obbcli.motion import Body, Shape
+    from obbcli.body import Body, Shape
     from obbcli.relay import Asker, Counts, Relay
 
 _EXACT = Accuracy()

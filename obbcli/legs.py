@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.motion import Body, Motion, PathMotion, is_same_pose
+from obbcli.body import Body
+from obbcli.motion import Motion, PathMotion, is_same_pose
 from obbcli.question import pivot_of
 from obbcli.relay import Leg, Relay, length_of
 from obbcli.results import FirstContact, Status

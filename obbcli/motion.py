@@ -1,4 +1,4 @@
-"""Where a body is and how it moves: `Pose`, `Motion` and the `Body` that carries them.
+"""How a body moves: `Motion`, constant or through given poses.
 
 World position of a vertex `p`: `x(0) = Q p + s`, then `x(t) = K + t V + R(t W) (x(0) - K)`; or
 through given poses, in pieces of that kind.
@@ -6,15 +6,13 @@ through given poses, in pieces of that kind.
 
 from __future__ import annotations
 
-import os
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli import kernels
 from obbcli.arrays import as_floats, as_vector
 from obbcli.errors import MotionError
 from obbcli.pose import Pose, vector_or_zero
@@ -25,22 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-
-class Surface(Protocol):
-    """What a body can be made of: an `ObbTree` or a `Mesh`."""
-
-    @property
-    def bounds(self) -> NDArray[np.float64]:
-        """Lower and upper corner, (2, 3)."""
-
-    @property
-    def surface_centroid(self) -> NDArray[np.float64]:
-        """The default pivot, unposed, (3,)."""
-
-
-Shape: TypeAlias = "Surface | str | os.PathLike[str]"
-
-__all__ = ["Body", "Motion", "PathMotion", "Pose", "Shape", "Surface", "as_body", "rotation_matrix"]
+__all__ = ["Motion", "PathMotion", "Pose", "rotation_matrix"]
 
 # Rad: nearer to half a turn, a matrix orthonormal to 1e-9 does not tell which way round is meant.
 _HALF_TURN_MARGIN = 1e-8
@@ -169,7 +152,7 @@ class PathMotion(Motion):
         places = tuple(poses)
         for k, pose in enumerate(places):
             if not isinstance(pose, Pose):
-                _refuse(f"poses[{k}]", pose, "pass Pose objects")
+                refuse(f"poses[{k}]", pose, "pass Pose objects")
         if len(places) != len(clock) or len(clock) < 2:
             raise MotionError(
                 "times", f"{len(clock)} for {len(places)} poses", "give as many, at least two"
@@ -258,66 +241,10 @@ def _as_time(value: float, name: str) -> float:
     return float(as_floats(value, (), name, MotionError))
 
 
-def _refuse(name: str, value: object, remedy: str) -> None:
+def refuse(name: str, value: object, remedy: str) -> None:
     """Raise for an argument of another kind."""
     raise MotionError(name, f"is of type {type(value).__name__}", remedy)
 
 
 _AS_LOADED = Pose()
 _AT_REST = Motion()
-
-
-@dataclass(frozen=True, init=False, eq=False)
-class Body:
-    """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
-
-    Args:
-        shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        pose: where it is at t = 0; that of the motion where this goes through poses.
-        motion: how it moves from there.
-
-    Raises:
-        MotionError: an argument is of another kind, or a motion through poses comes with another
-            pose.
-    """
-
-    shape: Shape
-    pose: Pose
-    motion: Motion
-
-    def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
-        # Told by what it has: trees belong to a layer above this one. By its type, since a tree's
-        # bounds cost as much as a whole mesh, and may find it damaged.
-        if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
-            _refuse("shape", shape, "pass an ObbTree, a Mesh or a path")
-        if not isinstance(pose, Pose):
-            _refuse("pose", pose, "pass a Pose")
-        if not isinstance(motion, Motion):
-            _refuse("motion", motion, "pass a Motion")
-        if isinstance(motion, PathMotion):
-            pose = motion.first_pose(pose)
-        # The dataclass is frozen to everybody else, and its own way takes three times as long.
-        fields = vars(self)
-        fields["shape"] = shape
-        fields["pose"] = pose
-        fields["motion"] = motion
-
-    @cached_property
-    def placed(self) -> kernels.Placed | None:
-        """The tree at its pose as the kernels see it; None where the shape is no tree yet."""
-        tree = getattr(self.shape, "kernel", None)
-        return None if tree is None else kernels.Placed(tree, self.pose.kernel)
-
-    @cached_property
-    def at_rest(self) -> kernels.Placed | None:
-        """The same of a body that does not move; None of others."""
-        return self.placed if self.motion.is_at_rest else None
-
-
-def as_body(shape: Body | Shape) -> Body:
-    """Return a `Body` as it is, and anything else at rest where its file put it.
-
-    Raises:
-        MotionError: neither a body nor a tree, a mesh or a path.
-    """
-    return shape if isinstance(shape, Body) else Body(shape)

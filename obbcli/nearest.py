@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.motion import as_body
+from obbcli.body import as_body
 from obbcli.question import POPS_A_SLICE, box_limits, damaged, out_of_range, stats_of, trees_of
 from obbcli.results import Distance
 
 if TYPE_CHECKING:
-    from obbcli.motion import Body, Shape
+    from obbcli.body import Body, Shape
     from obbcli.question import Trees
 
 _EXACT = Accuracy()

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
+from obbcli.body import Body, as_body
 from obbcli.contact import Query
 from obbcli.errors import MotionError, UnresolvedError
 from obbcli.legs import legs_of
 from obbcli.mesh import Mesh
-from obbcli.motion import Body, Motion, PathMotion, as_body
+from obbcli.motion import Motion, PathMotion
 from obbcli.question import (
     duration_of,
     moving_query,
@@ -36,7 +37,7 @@ from obbcli.tree import ObbTree
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from obbcli.motion import Shape
+    from obbcli.body import Shape
     from obbcli.question import Trees
 
 _EXACT = Accuracy()

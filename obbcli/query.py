@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.motion import as_body
+from obbcli.body import as_body
 from obbcli.question import (
     NO_LIMIT,
     duration_of,
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from obbcli.motion import Body, Shape
+    from obbcli.body import Body, Shape
     from obbcli.results import FirstContact
 
 _EXACT = Accuracy()

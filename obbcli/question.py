@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
+    from obbcli.body import Body, Shape, Surface
     from obbcli.errors import ObbError
-    from obbcli.motion import Body, Shape, Surface
 
 _NO_DEPTH_LIMIT = 2**32 - 1
 # Of the duration: the width asked of a bracket where the caller asks for none.

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from obbcli.accuracy import Accuracy
+    from obbcli.body import Body
     from obbcli.contact import Query
-    from obbcli.motion import Body
     from obbcli.question import Trees
     from obbcli.results import QueryStats
 

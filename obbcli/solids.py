@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from obbcli.body import Body
     from obbcli.mesh import Mesh
-    from obbcli.motion import Body
     from obbcli.question import Trees
     from obbcli.results import Inner
 

@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from obbcli.body import Body
 from obbcli.errors import MotionError
 from obbcli.frames import euler_step, rk4_step
 from obbcli.legs import ROUNDING, jump_at, norm, rounding_of
-from obbcli.motion import Body, Motion, PathMotion
+from obbcli.motion import Motion, PathMotion
 from obbcli.pose import Pose
 from obbcli.question import pivot_of
 from obbcli.relay import Leg, length_of

@@ -12,7 +12,7 @@ from obbcli.results import Collision, Contact, FirstContact, Status
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from obbcli.motion import Body
+    from obbcli.body import Body
     from obbcli.question import Trees
     from obbcli.results import Vector
 

@@ -29,6 +29,7 @@ LAYERS = (
         "frames",
         "pose",
         "motion",
+        "body",
         "accuracy",
         "results",
         "verdict",

@@ -56,6 +56,7 @@ NEEDED = {
     "obbcli",
     "obbcli.accuracy",
     "obbcli.arrays",
+    "obbcli.body",
     "obbcli.cli",
     "obbcli.cli.app",
     "obbcli.cli.asking",

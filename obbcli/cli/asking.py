@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from obbcli.accuracy import Accuracy
+    from obbcli.body import Body
     from obbcli.cli.inputs import Input
     from obbcli.cli.options import Decorator
     from obbcli.contact import Query
-    from obbcli.motion import Body
     from obbcli.report.record import Record, Setting
     from obbcli.results import FirstContact
 

@@ -16,8 +16,8 @@ from obbcli.results import Status
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from obbcli.body import Body
     from obbcli.cli.question import Question
-    from obbcli.motion import Body
     from obbcli.results import Contact, FirstContact, QueryStats
     from obbcli.search import Search
 

@@ -17,9 +17,10 @@ from obbcli.errors import MotionError
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from obbcli.body import Body
     from obbcli.cli.inputs import Input
     from obbcli.cli.options import Decorator
-    from obbcli.motion import Body, Motion, Pose
+    from obbcli.motion import Motion, Pose
 
     Numbers: TypeAlias = tuple[float, float, float]
 
@@ -275,7 +276,7 @@ class Question(NamedTuple):
 
     def bodies(self, files: tuple[Input, Input]) -> tuple[Body, Body]:
         """Return A and B as they are placed and move."""
-        from obbcli.motion import Body
+        from obbcli.body import Body
 
         a, b = (
             Body(file.tree, pose, motion)

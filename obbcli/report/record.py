@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
+    from obbcli.body import Body
     from obbcli.errors import ObbError
-    from obbcli.motion import Body, Pose
+    from obbcli.motion import Pose
     from obbcli.results import QueryStats
 
 Record: TypeAlias = dict[str, Any]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.motion import Body
+from obbcli.body import Body
 from obbcli.report.collide import triangle_tests
 from obbcli.report.contacts import contact_part
 from obbcli.report.record import Source, body_part, document, seconds_part

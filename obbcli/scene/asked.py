@@ -12,7 +12,7 @@ from obbcli.scene.results import SceneContact, SceneStats
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from obbcli.motion import Body
+    from obbcli.body import Body
     from obbcli.relay import Counts
     from obbcli.scene.candidates import Candidates
     from obbcli.scene.scene import Scene

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from obbcli.body import Body, as_body
 from obbcli.errors import SceneError
-from obbcli.motion import Body, as_body
 from obbcli.scene.keys import known_keys, nearest
 
 if TYPE_CHECKING:
-    from obbcli.motion import Shape
+    from obbcli.body import Shape
 
 # `{"bodies": [a, b]}`, `{"groups": [g]}` (within one group) or `{"groups": [g, h]}` (between two).
 Ignore: TypeAlias = Mapping[str, Sequence[str]]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
-    from obbcli.motion import Surface
+    from obbcli.body import Surface
     from obbcli.scene.bodies import Ignore, SceneBody
 
 Pair = tuple[int, int]

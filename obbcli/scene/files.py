@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from obbcli.accuracy import Accuracy
+from obbcli.body import Body
 from obbcli.errors import ObbError, SceneError
-from obbcli.motion import Body, Motion, Pose
+from obbcli.motion import Motion, Pose
 from obbcli.scene.bodies import SceneBody, as_ignored
 from obbcli.scene.keys import known_keys
 

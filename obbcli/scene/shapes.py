@@ -6,8 +6,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from obbcli.body import Body
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.motion import Body, Motion, PathMotion
+from obbcli.motion import Motion, PathMotion
 from obbcli.question import pivot_of
 from obbcli.scene.heads import TreeHead
 from obbcli.scene.results import BodyStats
@@ -16,7 +17,7 @@ from obbcli.tree import ObbTree, begins_as_tree
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from obbcli.motion import Shape
+    from obbcli.body import Shape
     from obbcli.scene.bodies import SceneBody
 
 

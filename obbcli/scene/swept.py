@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
-    from obbcli.motion import Body, Surface
+    from obbcli.body import Body, Surface
     from obbcli.pose import Pose
 
     Array = NDArray[np.float64]

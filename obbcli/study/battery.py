@@ -29,7 +29,7 @@ from obbcli.study.world import SLACK, Trees, pair_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from obbcli.motion import Body, Shape
+    from obbcli.body import Body, Shape
     from obbcli.results import FirstContact
     from obbcli.study.extremes import Changed, Extreme
     from obbcli.study.rows import Outcome

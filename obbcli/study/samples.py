@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from obbcli.body import Body
 from obbcli.contact import first_contact
-from obbcli.motion import Body
 from obbcli.nearest import distance
 from obbcli.query import collide
 from obbcli.results import Status

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from obbcli.body import Body, as_body
 from obbcli.errors import MotionError
 from obbcli.mesh import Mesh
-from obbcli.motion import Body, Motion, PathMotion, as_body
+from obbcli.motion import Motion, PathMotion
 from obbcli.question import duration_of, pivot_of, trees_of
 from obbcli.tree import ObbTree
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
-    from obbcli.motion import Shape
+    from obbcli.body import Shape
 
     Floats = NDArray[np.float64]
 

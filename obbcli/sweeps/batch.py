@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli import kernels
+from obbcli.body import Body
 from obbcli.contact import first_contact
 from obbcli.errors import MotionError, TreeFileError
-from obbcli.motion import Body
 from obbcli.question import NO_LIMIT, box_limits, out_of_range, refused, time_tolerance
 from obbcli.sweeps.answers import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
 from obbcli.touching import contact_at_start

@@ -8,9 +8,10 @@ import numpy as np
 
 from obbcli.accuracy import Accuracy
 from obbcli.arrays import as_floats
+from obbcli.body import Body, as_body
 from obbcli.cores import thread_count
 from obbcli.errors import MotionError
-from obbcli.motion import Body, Motion, PathMotion, as_body
+from obbcli.motion import Motion, PathMotion
 from obbcli.question import duration_of, pivot_of, trees_of
 from obbcli.sweeps.answers import RAW, as_rows
 from obbcli.sweeps.batch import Batch, Outcome, answer_batch, answer_one_by_one
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from obbcli.body import Shape
     from obbcli.errors import ObbError
-    from obbcli.motion import Shape
     from obbcli.question import Trees
     from obbcli.sweeps.answers import Answers
 

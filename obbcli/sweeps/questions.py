@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from obbcli.body import Body
 from obbcli.errors import MotionError
-from obbcli.motion import Body, Motion
+from obbcli.motion import Motion
 from obbcli.pose import Pose
 from obbcli.rotation import rotation_matrix
 from obbcli.sweeps.answers import RAW
