@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from obbcli.query import collide, triangle_pairs
     from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
     from obbcli.scene import Scene, SceneBody, SceneContact
-    from obbcli.study import Stability, stability
+    from obbcli.study import Stability, Tradeoff, stability, tradeoff
     from obbcli.sweeps import sweep
     from obbcli.tree import ObbTree
 
@@ -56,6 +56,7 @@ _HOMES = {
     "SceneError": "errors",
     "Stability": "study",
     "Status": "verdict",
+    "Tradeoff": "study",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
     "collide": "query",
@@ -65,6 +66,7 @@ _HOMES = {
     "load_mesh": "mesh",
     "stability": "study",
     "sweep": "sweeps",
+    "tradeoff": "study",
     "triangle_pairs": "query",
 }
 
@@ -90,6 +92,7 @@ __all__ = [
     "SceneError",
     "Stability",
     "Status",
+    "Tradeoff",
     "TreeFileError",
     "UnresolvedError",
     "__version__",
@@ -100,6 +103,7 @@ __all__ = [
     "load_mesh",
     "stability",
     "sweep",
+    "tradeoff",
     "triangle_pairs",
 ]
 

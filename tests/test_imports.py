@@ -12,7 +12,7 @@ import pytest
 
 import obbcli
 
-HEAVY = ("numpy", "rich", "trimesh", "meshio", "scipy", "obbcli.kernels")
+HEAVY = ("numpy", "rich", "matplotlib", "trimesh", "meshio", "scipy", "obbcli.kernels")
 
 
 def modules_after(code: str, *arguments: str) -> set[str]:
@@ -38,6 +38,7 @@ def modules_after(code: str, *arguments: str) -> set[str]:
         "from obbcli.cli import main; main(['build', '--help'])",
         "from obbcli.cli import main; main(['scene', '--help'])",
         "from obbcli.cli import main; main(['sweep', '--help'])",
+        "from obbcli.cli import main; main(['tradeoff', '--help'])",
         "from obbcli.cli import main; main(['collide', 'a.stl'])",
     ],
 )

@@ -17,6 +17,7 @@ _COMMANDS = {
     "scene": "scene",
     "sweep": "sweep",
     "stability": "stability",
+    "tradeoff": "tradeoff",
     "build": "build",
     "info": "info",
 }
@@ -33,6 +34,8 @@ obbtree: do these two triangle meshes touch, and when first?
                                          first-contact, once a row of a file
   obbtree stability gear.stl pinion.stl --omega 0 0 3
                                          which answers hold at the extremes?
+  obbtree tradeoff gear.stl pinion.stl --omega 0 0 3
+                                         what speed costs in accuracy, measured
   obbtree info gear.stl                  what is in a mesh or tree file
   obbtree build gear.stl                 keep the tree for later: gear.obbt
 

@@ -132,6 +132,32 @@ def trying(count: int, *, wanted: bool) -> Iterator[Callable[[int, str], None]]:
         yield show
 
 
+@contextmanager
+def measuring(budget: float, *, wanted: bool) -> Iterator[Callable[[float, int], None]]:
+    """Give what shows how many settings are measured, and how long the rest takes at most.
+
+    Args:
+        budget: s that all of it may take.
+        wanted: False draws nothing.
+
+    Yields:
+        a function that takes the seconds left and how many settings are measured.
+    """
+    if not (wanted and _is_terminal()):
+        yield lambda _left, _settings: None
+        return
+    start = time.monotonic()
+    with _progress() as progress:
+        task = progress.add_task("the reference answer", total=budget or 1.0)
+
+        def show(left: float, settings: int) -> None:
+            done = time.monotonic() - start
+            text = f"{settings} settings measured, at most {left:,.0f} s left"
+            progress.update(task, total=done + left or 1.0, completed=done, description=text)
+
+        yield show
+
+
 def _is_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
 
