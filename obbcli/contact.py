@@ -233,7 +233,8 @@ class Query:
 
     def _contact(self) -> Contact:
         if self._at_start.is_by_boxes:
-            return self._boxes_at_start()
+            query, bound = self._moving_query(), self._at_start.error_bound
+            return boxes_at_start(query, bound, self._accuracy.clearance)
         witness = self._at_start.witness()
         if witness is not None:
             return contact_at_start(self._bodies, self._trees, *witness)
@@ -243,16 +244,6 @@ class Query:
         if self._moving is None or found is None:
             return _SEPARATED
         return contact_of(self._moving, found, self._accuracy.clearance)
-
-    def _boxes_at_start(self) -> Contact:
-        """Return the contact of boxes at t = 0, with the place where some of them meet."""
-        query = self._moving_query()
-        query.advance(POPS_A_SLICE)
-        found = query.contact()
-        is_by_boxes = found is not None and found.evidence is kernels.Evidence.BOXES
-        if found is None or not is_by_boxes or found.low > 0:
-            return boxes_at_start(self._at_start.error_bound)
-        return contact_of(query, found, self._accuracy.clearance)
 
     @property
     def counts(self) -> Counts:

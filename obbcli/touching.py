@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
 from obbcli.accuracy import Accuracy
-from obbcli.question import limits_of, refused, trees_of
+from obbcli.question import POPS_A_SLICE, limits_of, refused, trees_of
 from obbcli.results import Collision, Contact, FirstContact, Status
 
 if TYPE_CHECKING:
@@ -83,8 +83,18 @@ def contact_at_start(
     )
 
 
-def boxes_at_start(error_bound: float) -> Contact:
-    """Return the contact of boxes that stand for triangles and meet at t = 0."""
+def boxes_at_start(query: kernels.ContactQuery, error_bound: float, clearance: float) -> Contact:
+    """Return the contact of boxes that stand for triangles and meet at t = 0.
+
+    Args:
+        query: a moving question of the same boxes, not asked yet: it may tell where some meet.
+        error_bound: how far apart the surfaces can be, mesh units.
+        clearance: of the question, mesh units.
+    """
+    query.advance(POPS_A_SLICE)
+    found = query.contact()
+    if found is not None and found.evidence is kernels.Evidence.BOXES and found.low == 0:
+        return contact_of(query, found, clearance)
     return Contact(
         status=Status.OVERLAP_AT_START,
         time=0.0,
