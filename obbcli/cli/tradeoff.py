@@ -33,8 +33,8 @@ from obbcli.cli.question import (
 from obbcli.cli.types import Finite, PathName
 
 if TYPE_CHECKING:
+    from obbcli.body import Body
     from obbcli.mesh import Mesh
-    from obbcli.motion import Body
     from obbcli.report.record import Record, Source
     from obbcli.report.tradeoff import Wording
     from obbcli.study.measuring import Study
@@ -194,7 +194,7 @@ def _read(
 def _study(
     question: Question, shapes: tuple[Mesh | ObbTree, Mesh | ObbTree], budget: float
 ) -> Study:
-    from obbcli.motion import Body
+    from obbcli.body import Body
     from obbcli.study.measuring import Study
 
     a, b = (

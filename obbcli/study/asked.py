@@ -9,7 +9,7 @@ from obbcli.study.measuring import Study
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
-    from obbcli.motion import Body, Shape
+    from obbcli.body import Body, Shape
     from obbcli.study.measuring import Progress
     from obbcli.study.trials import Tradeoff
 

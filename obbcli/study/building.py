@@ -6,14 +6,14 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from obbcli.body import Body
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.motion import Body
 from obbcli.tree import ObbTree, begins_as_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from obbcli.motion import Shape
+    from obbcli.body import Shape
     from obbcli.study.settings import Build
 
 

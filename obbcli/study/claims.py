@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli.accuracy import Accuracy
-from obbcli.motion import Body, PathMotion
+from obbcli.body import Body
+from obbcli.motion import PathMotion
 from obbcli.nearest import distance
 from obbcli.question import pivot_of
 from obbcli.results import Status

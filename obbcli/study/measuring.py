@@ -10,9 +10,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
+from obbcli.body import as_body
 from obbcli.contact import Query, first_contact
 from obbcli.errors import MotionError
-from obbcli.motion import PathMotion, as_body
+from obbcli.motion import PathMotion
 from obbcli.question import duration_of
 from obbcli.results import Status
 from obbcli.study.building import Built, Trees
@@ -30,7 +31,8 @@ from obbcli.study.trials import Timing, Tradeoff, Trial, Unreached, front_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from obbcli.motion import Body, Motion, Shape
+    from obbcli.body import Body, Shape
+    from obbcli.motion import Motion
     from obbcli.results import FirstContact
 
     # Takes about how many seconds are left, and how many settings are measured.
