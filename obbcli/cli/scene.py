@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene
-    from obbcli.scene.earliest import FirstContacts
-    from obbcli.scene.listed import AllContacts
+    from obbcli.scene.course import Course
     from obbcli.scene.results import SceneContact
 
 _STDIN_NAME = "<stdin>"
@@ -144,7 +143,7 @@ def _accuracy(accuracy: Accuracy, options: AccuracyOptions) -> Accuracy:
     return asked
 
 
-def _ask(scene: Scene, wanted: _Wanted) -> FirstContacts | AllContacts:
+def _ask(scene: Scene, wanted: _Wanted) -> Course:
     """Return the question, not yet advanced."""
     names = {body.name for body in scene.bodies}
     pairs = [_pair(text, names) for text in wanted.pairs] or None
@@ -168,7 +167,7 @@ def _pair(text: str, names: set[str]) -> tuple[str, str]:
     return known[0]
 
 
-def _run(found: FirstContacts | AllContacts, wanted: _Wanted, *, progress: bool) -> Answer:
+def _run(found: Course, wanted: _Wanted, *, progress: bool) -> Answer:
     """Return the answer; after Ctrl-C what is known by then."""
     from obbcli.report.scene import Answer
     from obbcli.results import Status
@@ -198,7 +197,7 @@ def _run(found: FirstContacts | AllContacts, wanted: _Wanted, *, progress: bool)
 def _record(
     source: Source,
     scene: Scene,
-    found: FirstContacts | AllContacts,
+    found: Course,
     answer: Answer,
     *,
     hashed: bool,

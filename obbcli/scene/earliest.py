@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from obbcli.errors import MotionError
 from obbcli.relay import sum_of
 from obbcli.results import Contact, Status
 from obbcli.scene.agenda import Agenda, Item
+from obbcli.scene.course import Course
 from obbcli.scene.results import SceneContact, SceneStats
 from obbcli.touching import unresolved
 
@@ -33,7 +33,7 @@ _POPS = 4096
 _CONTACT_FIELDS = tuple(field.name for field in fields(Contact))
 
 
-class FirstContacts(Iterator[SceneContact]):
+class FirstContacts(Course):
     """Contacts of a scene, earliest first, one a pair that touches.
 
     Made by `Scene.first_contacts`. A pair that a limit leaves open comes too, as `unresolved`, at
@@ -43,13 +43,10 @@ class FirstContacts(Iterator[SceneContact]):
         asked: bodies and pairs.
         first: whether to end after the earliest contact.
         is_eager: whether to finish a question before turning to another where that costs less.
-
-    Attributes:
-        asked: as given.
     """
 
     def __init__(self, asked: Asked, *, first: bool, is_eager: bool = True) -> None:
-        self.asked = asked
+        super().__init__(asked)
         self._accuracy: Accuracy = asked.accuracy
         self._agenda = Agenda(asked.candidates)
         self._is_first = first
@@ -83,21 +80,6 @@ class FirstContacts(Iterator[SceneContact]):
             in_contact=found,
             open_=ends[Status.UNRESOLVED],
         )
-
-    def __next__(self) -> SceneContact:
-        """Return the next contact.
-
-        Raises:
-            MeshError: a mesh is refused.
-            MotionError: positions leave the range of double, or sampled steps turn by more than
-                their integrator can follow.
-            TreeFileError: a tree file is damaged.
-        """
-        while not self.is_finished:
-            found = self.advance()
-            if found is not None:
-                return found
-        raise StopIteration
 
     def stop(self) -> None:
         """Give up: all that is not known yet comes next, as unresolved."""

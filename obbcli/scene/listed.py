@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MotionError, UnresolvedError
@@ -12,12 +11,15 @@ from obbcli.question import time_tolerance
 from obbcli.relay import sum_of
 from obbcli.results import Contact, Status
 from obbcli.scene.candidates import earliest
+from obbcli.scene.course import Course
 from obbcli.scene.earliest import FirstContacts
 from obbcli.scene.results import SceneContact, SceneStats
 from obbcli.search import Search
 from obbcli.touching import unresolved
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from obbcli.relay import Counts
     from obbcli.scene.asked import Asked
 
@@ -42,7 +44,7 @@ class _Listing(NamedTuple):
     search: Search
 
 
-class AllContacts(Iterator[SceneContact]):
+class AllContacts(Course):
     """Contacts of a scene, earliest first, one a pair of triangles that touches.
 
     Made by `Scene.contacts`. Two bodies are listed when it is known that they touch next. Where a
@@ -51,16 +53,13 @@ class AllContacts(Iterator[SceneContact]):
     Args:
         asked: bodies and pairs.
         limit: at most so many contacts. None: all.
-
-    Attributes:
-        asked: as given.
     """
 
     def __init__(self, asked: Asked, limit: int | None) -> None:
         if asked.accuracy.method == "sampled":
             fault = "knows the first contact alone"
             raise MotionError("method='sampled'", fault, "use the certified method")
-        self.asked = asked
+        super().__init__(asked)
         self._firsts = FirstContacts(asked, first=False, is_eager=False)
         self._listings: list[_Listing] = []
         self._left = limit
@@ -95,20 +94,6 @@ class AllContacts(Iterator[SceneContact]):
             exact_triangle_tests=stats.exact_triangle_tests + exact,
             pops=stats.pops + pops,
         )
-
-    def __next__(self) -> SceneContact:
-        """Return the next contact.
-
-        Raises:
-            MeshError: a mesh is refused.
-            MotionError: positions leave the range of double.
-            TreeFileError: a tree file is damaged.
-        """
-        while not self.is_finished:
-            found = self.advance()
-            if found is not None:
-                return found
-        raise StopIteration
 
     def stop(self) -> None:
         """Give up: of all that is not known yet it comes next up to when it is."""
