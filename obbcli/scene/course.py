@@ -1,4 +1,4 @@
-"""`Course`: contacts of a scene, found step by step: what `first_contacts` and `contacts` return."""
+"""`Course`: contacts of a scene, found step by step: what questions about scenes return."""
 
 from __future__ import annotations
 
