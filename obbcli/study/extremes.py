@@ -280,7 +280,7 @@ def timed(pair: Pair) -> Iterator[Extreme]:
     for power in POWERS_OF_TWO:
         for sign in (1, -1):
             yield Extreme(
-                "time scaled",
+                "time by 2^k",
                 f"2^{sign * power}",
                 2.0 ** (sign * power),
                 partial(_timed, pair, 2.0 ** (sign * power), is_binary=True),
@@ -288,7 +288,7 @@ def timed(pair: Pair) -> Iterator[Extreme]:
     for power in POWERS_OF_TEN:
         for sign in (1, -1):
             yield Extreme(
-                "time scaled",
+                "time by 10^k",
                 f"1e{sign * power}",
                 float(f"1e{sign * power}"),
                 partial(_timed, pair, float(f"1e{sign * power}"), is_binary=False),

@@ -108,3 +108,44 @@ def test_sampled_method_is_refused(obbtree):
 
     assert ended.code == 2
     assert ended.err.startswith("error: --method sampled: proves nothing")
+
+
+@pytest.mark.parametrize(("name", "magic"), [("held.svg", b"<?xml"), ("held.PNG", b"\x89PNG\r\n")])
+def test_plot_shows_every_family(here, obbtree, name, magic):
+    pictures = []
+    for _ in range(2):
+        assert obbtree("stability", *APART, "--plot", name, "--quiet").code == 0
+        picture = (here / name).read_bytes()
+        assert picture.startswith(magic)
+        pictures.append(picture)
+
+    assert pictures[0] == pictures[1]
+    if name == "held.svg":
+        text = picture.decode()
+        assert all(family in text for family in ("shift the world", "tilt B", "none is broken"))
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "fault"),
+    [
+        (("--plot", "held.pdf"), 2, "is no .svg or .png file"),
+        (("--plot", "gone/held.svg"), 5, "folder"),
+        (("--plot", "held.svg", "-o", "held.svg"), 2, "where the answer goes"),
+    ],
+)
+def test_plot_that_cannot_be_is_refused_first(here, obbtree, words, code, fault):
+    ended = obbtree("stability", *APART, *words)
+
+    assert ended.code == code
+    assert fault in ended.err
+    assert not ended.out
+    assert not (here / "held.svg").exists()
+
+
+def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
+    monkeypatch.setattr("obbcli.cli.stability.find_spec", lambda _: None)
+
+    ended = obbtree("stability", *APART, "--plot", "held.svg")
+
+    assert ended.code == 2
+    assert "pip install 'obbtree[plot]'" in ended.err

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 # Where no rotation is exact: lengths alone can be compared.
 TURNED = "rotate the world"
 # Those that keep every vertex in its row.
-IN_ORDER = {"scale by 2^k", "scale by 10^k", "shift the world", "common velocity", "time scaled"}
-IN_ORDER |= {"tilt B", "round coordinates", TURNED}
+IN_ORDER = {"scale by 2^k", "scale by 10^k", "shift the world", "common velocity"}
+IN_ORDER |= {"time by 2^k", "time by 10^k", "tilt B", "round coordinates", TURNED}
 
 
 def up(height: float) -> Floats:

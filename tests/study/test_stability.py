@@ -30,7 +30,8 @@ FAMILIES = [
     "split triangles",
     "repeat triangles",
     "reverse windings",
-    "time scaled",
+    "time by 2^k",
+    "time by 10^k",
     "cut the duration",
     "angular speed",
     "tilt B",
@@ -82,7 +83,7 @@ def test_without_rotation_what_rounds_nothing_changes_no_bit() -> None:
         "permute triangles",
         "repeat triangles",
         "reverse windings",
-        "time scaled",
+        "time by 2^k",
     }
     assert {row.outcome for row in lossless} == {"same"}
     assert all(row.time_bounds == study.answer.time_bounds for row in lossless)
