@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.mesh import Mesh
+from obbcli.mesh.grain import grain_of, warnings_of
 from obbcli.report.record import Source, document, file_sha256, finite
 from obbcli.report.table import Table, count, length, point, size
 
@@ -54,7 +55,18 @@ def _mesh_part(mesh: Mesh) -> Record:
         "is_watertight": mesh.is_watertight,
         "degenerate_count": mesh.degenerate_count,
         "duplicate_count": mesh.duplicate_count,
+        "accuracy": _accuracy_part(mesh),
     }
+
+
+def _accuracy_part(mesh: Mesh) -> Record:
+    """Return what of the mesh itself limits answers about it."""
+    grain = grain_of(mesh)
+    values = {
+        name: finite(value) if isinstance(value, float) else value
+        for name, value in grain._asdict().items()
+    }
+    return values | {"warnings": warnings_of(mesh, grain)}
 
 
 def _tree_part(path: str, tree: ObbTree) -> Record:
@@ -100,6 +112,7 @@ def info_tables(record: Record) -> list[Table]:
 
 def _mesh_rows(path: str, result: Record) -> list[tuple[str, str]]:
     low, high = result["bounds"]
+    warnings = [("warning", text) for text in result["accuracy"]["warnings"]]
     return [
         ("file", f"{path} ({result['kind']})"),
         ("triangles", count(result["triangle_count"])),
@@ -110,6 +123,7 @@ def _mesh_rows(path: str, result: Record) -> list[tuple[str, str]]:
         ("watertight", "yes" if result["is_watertight"] else "no"),
         ("degenerate", f"{count(result['degenerate_count'])} triangles"),
         ("duplicate", f"{count(result['duplicate_count'])} triangles"),
+        *warnings,
     ]
 
 

@@ -26,6 +26,16 @@ def test_info_of_a_mesh(here, obbtree):
         "is_watertight": True,
         "degenerate_count": 0,
         "duplicate_count": 0,
+        "accuracy": {
+            "digits": "float32",
+            "spacing": 2.0**-23,
+            "shortest_edge": 1.0,
+            "smallest_altitude": pytest.approx(math.sqrt(0.5)),
+            "largest_aspect": pytest.approx(2.0),
+            "sliver_count": 0,
+            "extents_ratio": 1.0,
+            "warnings": [],
+        },
         "tree": None,
         "check": None,
     }
@@ -44,6 +54,29 @@ def test_info_counts_what_is_odd(here, obbtree):
     assert result["is_watertight"] is False
     assert result["duplicate_count"] == 1
     assert result["degenerate_count"] == 1
+
+
+def test_info_warns_of_digits_slivers_and_extents(here, obbtree):
+    def warnings(*corners):
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in corners] + ["f 1 2 3"]
+        (here / "thin.obj").write_text("\n".join(lines) + "\n")
+        document = obbtree("info", "thin.obj", "--json").json
+        found = document["result"]["accuracy"]["warnings"]
+        assert obbtree("info", "thin.obj").out.count("\nwarning") == len(found)
+        return found
+
+    assert not warnings((0, 0, 0), (1, 0, 0), (0, 1, 1))
+    # Ten steps of float32 at 2^20, which are 2^-3 each.
+    (grid,) = warnings((2**20, 0, 0), (2**20, 1.25, 0), (2**20 + 1.25, 0, 1.25))
+    assert "grid of 0.12 (float32)" in grid
+    assert " steps of it" in grid
+    (sliver,) = warnings((0, 0, 0), (1.1, 0, 0), (0.5, 2**-11, 0))
+    assert sliver.startswith("slivers: 1, up to 2.25e+03 times")
+    # As far as doubles reach there are digits enough, but hardly a height.
+    assert len(warnings((0, 0, 0), (1.1, 0, 0), (0, 1, 1e-7))) == 1
+    assert warnings((0, 0, 0), (1.1, 0, 0), (0.3, 0, 0)) == [
+        "degenerate triangles: 1, which have no normal"
+    ]
 
 
 def test_info_of_a_tree(here, obbtree):
