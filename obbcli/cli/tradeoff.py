@@ -48,6 +48,7 @@ class _Wanted(NamedTuple):
 
     budget: float
     max_error: float | None
+    max_gap: float | None
     max_time: float | None
     plot: str | None
 
@@ -84,6 +85,13 @@ _wanted_options = gathered(
             type=Finite(0),
             metavar="E",
             help="Name the fastest setting that errs by no more, in s.",
+        ),
+        option(
+            QUESTION,
+            "--max-gap",
+            type=Finite(0),
+            metavar="D",
+            help="Name the fastest setting that says contact of surfaces no further apart.",
         ),
         option(
             QUESTION,
@@ -230,12 +238,13 @@ def _record(
     is_interrupted: bool,
 ) -> Record:
     from obbcli.report.record import Setting, motion_part
-    from obbcli.report.tradeoff import tradeoff_record
+    from obbcli.report.tradeoff import Limits, tradeoff_record
 
     found = study.result()
     motion = motion_part(study.bodies, question.duration) if asked.common.json else {}
     setting = Setting(sources, motion, found.reference_accuracy)
-    limits = asked.wanted.max_error, asked.wanted.max_time
+    wanted = asked.wanted
+    limits = Limits(wanted.max_error, wanted.max_gap, wanted.max_time)
     wording = _wording(asked, study.bodies)
     return tradeoff_record(setting, found, wording, limits, is_interrupted=is_interrupted)
 

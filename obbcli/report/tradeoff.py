@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from dataclasses import asdict, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,7 +13,7 @@ from obbcli.accuracy import Accuracy
 from obbcli.report.record import document, finite
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from obbcli.report.record import Record, Setting
     from obbcli.study.trials import Tradeoff, Trial, Unreached
@@ -49,11 +51,22 @@ class Wording(NamedTuple):
         return " && ".join(shlex.join(line) for line in (*lines, question))
 
 
+class Limits(NamedTuple):
+    """What a setting is wanted for: the largest error, s, or gap, mesh units; the longest time, s.
+
+    None where it does not matter.
+    """
+
+    max_error: float | None = None
+    max_gap: float | None = None
+    max_time: float | None = None
+
+
 def tradeoff_record(
     setting: Setting,
     found: Tradeoff,
     wording: Wording,
-    limits: tuple[float | None, float | None],
+    limits: Limits,
     *,
     is_interrupted: bool,
 ) -> Record:
@@ -63,7 +76,7 @@ def tradeoff_record(
         setting: what was asked; its accuracy is the reference's.
         found: what was measured.
         wording: what command lines are made of.
-        limits: the largest error, s, and the longest time, s, that a setting is wanted for.
+        limits: what a setting is wanted for.
         is_interrupted: whether Ctrl-C ended it.
     """
     rows = [_row_part(row, wording) for row in found.rows]
@@ -156,20 +169,25 @@ def _price(found: Tradeoff, share: float) -> Record:
     }
 
 
-def _recommended(found: Tradeoff, limits: tuple[float | None, float | None]) -> list[Record]:
+def _recommended(found: Tradeoff, limits: Limits) -> list[Record]:
     """Return which rows fit what was asked for, proven or not; null where none does."""
-    max_error, max_time = limits
-    wanted: list[tuple[str, float, Any]] = []
-    if max_error is not None:
-        wanted.append(("max_error", max_error, found.cheapest))
-    if max_time is not None:
-        wanted.append(("max_time", max_time, found.most_accurate))
     parts = []
-    for name, limit, choose in wanted:
-        chosen = {kind: choose(limit, proven=kind == "row_proven") for kind in _KINDS}
-        numbers = {kind: _index(found, row) for kind, row in chosen.items()}
-        parts.append({"for": name, "limit": limit} | numbers)
+    error = math.inf if limits.max_error is None else limits.max_error
+    gap = math.inf if limits.max_gap is None else limits.max_gap
+    if min(error, gap) < math.inf:
+        choose = partial(found.cheapest, error, max_gap=gap)
+        parts.append(_chosen(found, choose, max_error=limits.max_error, max_gap=limits.max_gap))
+    if limits.max_time is not None:
+        choose = partial(found.most_accurate, limits.max_time)
+        parts.append(_chosen(found, choose, max_time=limits.max_time))
     return parts
+
+
+def _chosen(found: Tradeoff, choose: Callable[..., Trial | None], **limits: float | None) -> Record:
+    numbers = {kind: _index(found, choose(proven=kind == "row_proven")) for kind in _KINDS}
+    return {
+        "limits": {name: limit for name, limit in limits.items() if limit is not None}
+    } | numbers
 
 
 _KINDS = ("row", "row_proven")

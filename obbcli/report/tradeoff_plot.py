@@ -21,7 +21,7 @@ _KINDS = {
 }
 # How far apart the lanes of no error and of wrong verdicts are from the decades: in decades.
 _LANE = 1.5
-_LONGEST_LABEL = 34
+_LONGEST_LABEL = 48
 
 
 def tradeoff_plot(record: Record, kind: str) -> bytes:
@@ -108,6 +108,7 @@ def _front(axes: Any, rows: list[Record], places: list[tuple[float, float]]) -> 
             fontsize=8.5,
             va="top",
             zorder=4,
+            bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
             arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkB": 4},
         )
 

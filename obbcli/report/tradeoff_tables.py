@@ -172,8 +172,8 @@ def _priced(rows: list[Record], index: int | None, none: str) -> tuple[str, str]
 
 def _advice(result: Record, part: Record) -> Table:
     """Return the settings for a limit, with their command lines."""
-    name, limit = part["for"], number(part["limit"])
-    best = "fastest" if name == "max_error" else "most accurate"
+    limits = part["limits"]
+    best = "most accurate" if "max_time" in limits else "fastest"
     lines = []
     for kind, text in (("row", best), ("row_proven", f"{best} proof")):
         if part[kind] is None:
@@ -182,4 +182,5 @@ def _advice(result: Record, part: Record) -> Table:
         row = result["rows"][part[kind]]
         lines.append((text, row["command"]))
         lines.append(("", f"{seconds(_time(row))}, error {_error(row)}, {_claim(row)}"))
-    return Table(lines, title=f"for --{name.replace('_', '-')} {limit}")
+    words = [f"--{name.replace('_', '-')} {number(limit)}" for name, limit in limits.items()]
+    return Table(lines, title=f"for {' '.join(words)}")
