@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from obbcli.report.table import seconds
 from obbcli.report.tradeoff_tables import label
 
 if TYPE_CHECKING:
@@ -21,7 +22,9 @@ _KINDS = {
 }
 # How far apart the lanes of no error and of wrong verdicts are from the decades: in decades.
 _LANE = 1.5
-_LONGEST_LABEL = 48
+# How many settings of the front the legend has room for.
+_NAMED = 11
+_NEXT_LINE = "\n"
 
 
 def tradeoff_plot(record: Record, kind: str) -> bytes:
@@ -29,7 +32,7 @@ def tradeoff_plot(record: Record, kind: str) -> bytes:
     # The picture alone needs it: it is no dependency of anything else.
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10, 6.4), layout="constrained")
+    figure = Figure(figsize=(12, 6.4), layout="constrained")
     axes: Any = figure.add_subplot()
     rows = [row for row in record["result"]["rows"] if row["status"] != "unresolved"]
     low, high = _decades(rows)
@@ -40,7 +43,7 @@ def tradeoff_plot(record: Record, kind: str) -> bytes:
         on = [k for k in chosen if rows[k]["on_front"]]
         style = {"color": color, "marker": marker}
         _scatter(axes, [places[k] for k in off], s=26, alpha=0.45, linewidths=0, **style)
-        _scatter(axes, [places[k] for k in on], s=80, edgecolors="black", zorder=3, **style)
+        _scatter(axes, [places[k] for k in on], s=110, edgecolors="black", zorder=3, **style)
         if chosen:
             axes.scatter([], [], s=40, label=f"{text} ({len(chosen)})", **style)
     _front(axes, rows, places)
@@ -88,29 +91,24 @@ def _place(row: Record, low: int, high: int) -> tuple[float, float]:
 
 
 def _front(axes: Any, rows: list[Record], places: list[tuple[float, float]]) -> None:
-    """Draw the front as a staircase, its corners named."""
-    front = sorted(place for place, row in zip(places, rows, strict=True) if row["on_front"])
+    """Draw the front as a staircase, its corners numbered, and name them in the legend."""
+    both = zip(places, rows, strict=True)
+    front = sorted(((place, row) for place, row in both if row["on_front"]), key=lambda one: one[0])
     if not front:
         return
-    axes.step(*zip(*front, strict=True), where="post", color="black", linewidth=1.2, zorder=2)
-    named = sorted(
-        (place, label(row)) for place, row in zip(places, rows, strict=True) if row["on_front"]
-    )
-    bottom, step = math.inf, 0.035 * (max(y for _, y in places) - min(y for _, y in places) + 3)
-    for (x, y), text in named:
-        height = min(y, bottom - step)  # names of neighbours go below one another
-        bottom = height
-        short = text if len(text) <= _LONGEST_LABEL else text[: _LONGEST_LABEL - 1] + "…"
+    corners = [place for place, _ in front]
+    axes.step(*zip(*corners, strict=True), where="post", color="black", linewidth=1.2, zorder=2)
+    axes.scatter([], [], s=0, label="the front, fastest first:")
+    every = math.ceil(len(front) / _NAMED)
+    for number, (place, row) in enumerate(front, start=1):
         axes.annotate(
-            short,
-            (x, y),
-            xytext=(x * 1.12, height - 0.3 * step),
-            fontsize=8.5,
-            va="top",
-            zorder=4,
-            bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
-            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkB": 4},
+            str(number), place, ha="center", va="center", fontsize=7, color="white", zorder=4
         )
+        if (len(front) - number) % every:  # a legend has room for some; the last is always there
+            continue
+        error = "no error" if not row["time_error"] else f"{abs(row['time_error']):.1g} s"
+        text = f"{label(row).replace('; ', _NEXT_LINE)}{_NEXT_LINE}{seconds(place[0])}, {error}"
+        axes.scatter([], [], s=60, color="black", marker=f"${number}$", label=text)
 
 
 def _steps(axes: Any, rows: list[Record], places: list[tuple[float, float]]) -> None:
@@ -157,4 +155,4 @@ def _words(axes: Any, record: Record) -> None:
     axes.set_title(f"{names}: what speed costs in accuracy (truth: {status})", loc="left")
     axes.set_xlabel("time of a question, warm, median [s]")
     axes.set_ylabel("error of the contact's time against the certified answer [s]")
-    axes.legend(loc="lower left", fontsize=8.5, framealpha=0.9)
+    axes.figure.legend(loc="outside right upper", fontsize=8, frameon=False, labelspacing=0.7)

@@ -36,7 +36,8 @@ class Judgement(NamedTuple):
     Attributes:
         is_verdict_wrong: whether it says contact where there is none, or none where there is.
         time_error: s; how much too early (negative) or too late the contact is said to be; 0 within
-            the reference's bracket and where both are separated; None where it cannot be said.
+            the reference's bracket or as near to it as it is wide, and where both are separated;
+            None where it cannot be said.
         gap: mesh units; how far apart the surfaces truly are at the time named. None where no time
             is, or the distance took too long.
         claims_checked: how many things that it claims were put to the test.
@@ -195,10 +196,13 @@ def _low(answer: FirstContact) -> float | None:
 
 
 def _time_error(answer: FirstContact, reference: FirstContact) -> float:
-    """Return by how many seconds the contact is said too early (negative) or too late."""
+    """Return by how many seconds the contact is said too early (negative) or too late.
+
+    What is no further from the reference's bracket than this is wide is not told from the truth.
+    """
     if answer.time is None or reference.time_bounds is None:
         return 0.0
     low, high = reference.time_bounds
-    if answer.time < low:
-        return answer.time - low
-    return max(0.0, answer.time - (low if high is None else high))
+    end = low if high is None else high
+    error = min(answer.time - low, 0.0) or max(answer.time - end, 0.0)
+    return error if abs(error) > end - low else 0.0

@@ -71,8 +71,8 @@ class Trial:
         answer: what it answered.
         is_verdict_wrong: whether that is contact where there is none, or none where there is.
         time_error: s; by how much its time is too early (negative) or too late, against the
-            reference's bracket; 0 within it and where both are separated. None where it cannot be
-            said: with a wrong verdict, or unresolved.
+            reference's bracket; 0 within it, or as near to it as it is wide, and where both are
+            separated. None where it cannot be said: with a wrong verdict, or unresolved.
         gap: mesh units; how far apart the surfaces truly are at the time it names, an upper bound.
             None where it names none.
         claims_checked: how many of its claims were put to the test.
