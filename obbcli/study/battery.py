@@ -277,4 +277,4 @@ def _limit(changed: Changed) -> str:
 def _why_other_bits(changed: Changed, *, is_cut: bool) -> str:
     if changed.bound == 0:
         return "" if is_cut else "the same surfaces in other boxes: other brackets, and both hold"
-    return f"{changed.why}; by up to {changed.bound:.2g}"
+    return f"{changed.why}: points are off by up to {changed.bound:.2g}"

@@ -173,7 +173,7 @@ def _shifted(pair: Pair, shift: Floats) -> Changed:
         changed.append(side._replace(vertices=vertices, pivot=pivot))
         bound += side.off_by(pair.duration, points=points, pivot=off)
     spacing = float(np.spacing(np.abs(shift).max()))
-    why = f"coordinates round to the grid of doubles there, {spacing:.2g} apart: as measured"
+    why = f"coordinates round to the grid of doubles there, {spacing:.2g} apart, as measured"
     return _changed(pair, changed, bound, why)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -127,7 +128,7 @@ def _split_pair(pair: Pair, times: int) -> Changed:
     asked = pair._replace(a=sides[0], b=sides[1])
     if bound == 0:
         return Changed(asked, is_same=pair.is_exact)
-    return Changed(asked, bound * SLACK, "middles that no double holds are rounded: as measured")
+    return Changed(asked, bound * SLACK, "middles that no double holds were rounded, as measured")
 
 
 def _split(side: Side) -> tuple[Side, float]:
@@ -167,7 +168,7 @@ def _coarsened(pair: Pair, bits: int) -> Changed:
     asked = pair._replace(a=sides[0], b=sides[1])
     if bound == 0:
         return Changed(asked, is_same=True, why="the coordinates have no more digits than that")
-    return Changed(asked, bound, "how far vertices were moved: as measured")
+    return Changed(asked, bound, "coordinates were rounded, as measured")
 
 
 def _rounded(values: Floats, bits: int) -> Floats:
@@ -201,14 +202,14 @@ def _tilted(pair: Pair, angle: float) -> Changed:
     asked = pair._replace(b=side._replace(vertices=vertices))
     if points == 0:
         return Changed(asked, is_same=True, why="no coordinate changed: less than half an ulp")
-    return Changed(asked, points, "how far vertices were moved: as measured")
+    return Changed(asked, points, "vertices were turned away, as measured")
 
 
 def _turn_less_one(angle: float, arms: Floats) -> Floats:
     """Return R x - x for a turn about the axis, to full relative accuracy."""
     across = np.cross(_AXIS, arms)
-    half = np.sin(angle / 2)
-    return np.asarray(np.sin(angle) * across + 2 * half * half * np.cross(_AXIS, across))
+    half = math.sin(angle / 2)
+    return np.asarray(math.sin(angle) * across + 2 * half * half * np.cross(_AXIS, across))
 
 
 def cut(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]:
