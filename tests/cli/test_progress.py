@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from obbcli.cli.progress import WORTH_A_BAR, bar, counting
+from obbcli.cli.progress import WORTH_A_BAR, bar, counting, measuring
 
 
 class Terminal(io.StringIO):
@@ -155,3 +155,18 @@ def test_sweeps_count_their_rows_on_a_terminal(here, obbtree, stream, words, is_
         obbtree("sweep", "cube.stl", "apart.obj", "q.csv", "-o", "out.jsonl", *words)
 
     assert ("1 rows, " in terminal.getvalue()) == is_drawn
+
+
+def test_study_shows_what_is_measured_and_what_time_is_left_at_most():
+    with redirect_stderr(Terminal()) as terminal, measuring(60.0, wanted=True) as show:
+        show(12.4, 7)
+
+    assert "7 settings measured, at most 12 s left" in terminal.getvalue()
+
+
+@pytest.mark.parametrize(("stream", "wanted"), [(Terminal, False), (io.StringIO, True)])
+def test_study_draws_nothing_unasked_nor_without_a_terminal(stream, wanted):
+    with redirect_stderr(stream()) as terminal, measuring(60.0, wanted=wanted) as show:
+        show(1.0, 1)
+
+    assert terminal.getvalue() == ""

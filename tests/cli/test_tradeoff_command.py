@@ -304,6 +304,36 @@ def test_bad_options_are_refused_before_anything_is_measured(obbtree, words, cod
         assert ended.out == ""
 
 
+@pytest.mark.usefixtures("here", "small")
+def test_one_mesh_against_itself_is_built_once(obbtree):
+    ended = obbtree("tradeoff", "cube.stl", "cube.stl", "--translate-b", 3, 0, 0, "--vel", 1, 0, 0,
+                    "--duration", 1.5, "--budget", 1000, "--json")  # fmt: skip
+
+    assert ended.code == 0
+    for row in ended.json["result"]["rows"]:
+        assert row["command"].count("obbtree build") <= 1
+
+
+@pytest.mark.usefixtures("here", "small")
+def test_meshes_of_one_name_get_trees_of_their_own(here, obbtree):
+    (here / "other").mkdir()
+    (here / "other" / "cube.obj").write_text((here / "touching.obj").read_text())
+
+    ended = obbtree("tradeoff", "cube.stl", "other/cube.obj", *TURN, "--budget", 1000, "--json")
+
+    built = [row["command"] for row in ended.json["result"]["rows"] if "build" in row["command"]]
+    assert built
+    assert all("-o cube.obbt " in line and "-o cube-b.obbt " in line for line in built)
+
+
+@pytest.mark.usefixtures("here")
+def test_standard_input_for_both_is_refused(obbtree):
+    ended = obbtree("tradeoff", "-", "-")
+
+    assert ended.code == 2
+    assert "name a file for one of them" in ended.err
+
+
 @pytest.mark.usefixtures("here")
 def test_file_that_is_not_there_is_refused(obbtree):
     ended = obbtree("tradeoff", "cube.stl", "gone.stl")
