@@ -98,4 +98,5 @@ def _words(figure: Any, axes: Any, record: Record) -> None:
     broken = result["broken_count"]
     end = "none is broken" if not broken else f"{broken} BROKEN"
     axes.set_title(f"{a} and {b}: {result['tried_count']} extremes, {end}", loc="left")
-    figure.legend(loc="outside lower center", ncols=3, frameon=False)
+    if result["rows"]:
+        figure.legend(loc="outside lower center", ncols=3, frameon=False)

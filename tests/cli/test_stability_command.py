@@ -103,6 +103,18 @@ def test_interrupt_keeps_what_was_tried(obbtree, monkeypatch):
     assert ended.err == "note: interrupted; not tried: 78 extremes\n"
 
 
+def test_interrupt_of_the_first_extreme_draws_an_empty_plot(here, obbtree, monkeypatch):
+    def stop(self):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Battery, "advance", stop)
+    ended = obbtree("stability", *APART, "--plot", "held.svg")
+
+    assert ended.code == 130
+    assert "0 of 81 (interrupted)" in ended.out
+    assert "0 extremes" in (here / "held.svg").read_text()
+
+
 def test_sampled_method_is_refused(obbtree):
     ended = obbtree("stability", *APART, "--method", "sampled")
 
