@@ -74,9 +74,11 @@ def test_info_warns_of_digits_slivers_and_extents(here, obbtree):
     assert sliver.startswith("slivers: 1, up to 2.25e+03 times")
     # As far as doubles reach there are digits enough, but hardly a height.
     assert len(warnings((0, 0, 0), (1.1, 0, 0), (0, 1, 1e-7))) == 1
-    assert warnings((0, 0, 0), (1.1, 0, 0), (0.3, 0, 0)) == [
-        "degenerate triangles: 1, which have no normal"
-    ]
+    flat = ["degenerate triangles: 1, which have no normal"]
+    assert warnings((0, 0, 0), (1.1, 0, 0), (0.3, 0, 0)) == flat
+    # On the line (1, 3, 5) exactly; rounded differences make an area of it, which is no sliver.
+    line = (0.03372333922048387, 0.6369616873214543, 0.0012804226230060944)
+    assert warnings(*((x, 3 * x, 5 * x) for x in line)) == flat
 
 
 def test_info_of_a_tree(here, obbtree):
