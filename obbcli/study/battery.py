@@ -20,7 +20,7 @@ from obbcli.accuracy import Accuracy
 from obbcli.contact import first_contact
 from obbcli.errors import ObbError
 from obbcli.results import Status
-from obbcli.study import extremes, surfaces
+from obbcli.study import extremes, surfaces, units
 from obbcli.study.proofs import Proofs, on_clock
 from obbcli.study.rows import Row, Stability
 from obbcli.study.samples import fault_of_samples
@@ -226,7 +226,7 @@ def plan(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]
         low: s; no contact before it. None: none at all.
         high: s; contact then. None: none is proven.
     """
-    yield from extremes.scaled(pair)
+    yield from units.scaled(pair)
     yield from extremes.shifted(pair)
     yield from extremes.hurried(pair)
     yield from extremes.turned(pair)
@@ -235,7 +235,7 @@ def plan(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]
     yield from surfaces.split(pair)
     yield from surfaces.repeated(pair)
     yield from surfaces.reversed_windings(pair)
-    yield from extremes.timed(pair)
+    yield from units.timed(pair)
     yield from surfaces.cut(pair, low, high)
     yield from surfaces.spun(pair)
     yield from surfaces.tilted(pair)

@@ -1,4 +1,4 @@
-"""The extremes that change a question's numbers and not its answer: scale, place, clock, order.
+"""The extremes that change a question's numbers and not its answer: place, velocity, rotation.
 
 Each gives the changed question, how lengths and times in it compare, and a bound on how far the
 rounding of the changed input may have moved any point: what the answers may differ by.
@@ -6,7 +6,6 @@ rounding of the changed input may have moved any point: what the answers may dif
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 
     from obbcli.study.world import Floats
 
-POWERS_OF_TWO = (1, 10, 100, 300, 500, 800, 1000, 1020)
-POWERS_OF_TEN = (1, 3, 6, 12, 30, 100, 200, 300)
 SHIFTS = (3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15)
 VELOCITIES = (0, 1, 2, 3, 4, 6, 8, 10, 12, 15)
 TURNS = (1e-9, 1e-3, 0.5, 1.0, 2.0, 3.0)
@@ -71,87 +68,6 @@ class Extreme(NamedTuple):
     name: str
     magnitude: float
     change: Callable[[], Changed]
-
-
-def scaled(pair: Pair) -> Iterator[Extreme]:
-    """Yield the pair in other units: powers of two, which round nothing, and of ten."""
-    for power in POWERS_OF_TWO:
-        for sign in (1, -1):
-            yield Extreme(
-                "scale by 2^k",
-                f"2^{sign * power}",
-                2.0 ** (sign * power),
-                partial(_scaled, pair, 2.0 ** (sign * power), is_binary=True),
-            )
-    for power in POWERS_OF_TEN:
-        for sign in (1, -1):
-            yield Extreme(
-                "scale by 10^k",
-                f"1e{sign * power}",
-                float(f"1e{sign * power}"),
-                partial(_scaled, pair, float(f"1e{sign * power}"), is_binary=False),
-            )
-
-
-def _scaled(pair: Pair, factor: float, *, is_binary: bool) -> Changed:
-    with np.errstate(over="ignore", under="ignore"):
-        a, b = (
-            side._replace(
-                vertices=side.vertices * factor,
-                velocity=side.velocity * factor,
-                pivot=side.pivot * factor,
-            )
-            for side in pair.sides
-        )
-    asked = pair.accuracy
-    near = asked.distance_tolerance
-    accuracy = replace(
-        asked,
-        clearance=_within(asked.clearance * factor),
-        distance_tolerance=None if near is None else _within(near * factor),
-    )
-    changed = Pair(a, b, pair.duration, accuracy)
-    if is_binary and all(
-        _is_back(old, new, factor) for old, new in zip(pair.sides, changed.sides, strict=True)
-    ):
-        return Changed(changed, is_same=True, length=factor)
-    bound = sum(_scaled_by(side, pair.duration, factor) for side in pair.sides)
-    bound += 4 * UNIT * asked.clearance
-    why = "a product is off by 2^-53 of itself, or by 2^-1075 where it is subnormal"
-    return Changed(changed, bound, why, length=factor)
-
-
-def _within(value: float) -> float:
-    """Return a tolerance as a double."""
-    return min(value, float(np.finfo(float).max))
-
-
-def _is_back(old: Side, new: Side, factor: float) -> bool:
-    """Return whether scaling by a power of two lost no bit."""
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        return all(
-            np.array_equal(before, after / factor)
-            for before, after in (
-                (old.vertices, new.vertices),
-                (old.velocity, new.velocity),
-                (old.pivot, new.pivot),
-            )
-        )
-
-
-def _scaled_by(side: Side, duration: float, factor: float) -> float:
-    """Return how far products by `factor` move points, in the units before it."""
-    tiny = 2.0**-1074 / factor
-
-    def off(rows: Floats) -> float:
-        return 2.0 * (UNIT * longest(rows) + tiny)
-
-    return side.off_by(
-        duration,
-        points=off(side.vertices),
-        pivot=off(side.pivot[None]),
-        velocity=off(side.velocity[None]),
-    )
 
 
 def shifted(pair: Pair) -> Iterator[Extreme]:
@@ -271,64 +187,3 @@ def _turned(pair: Pair, turn: Floats) -> Changed:
         )
     why = f"the matrix is off a rotation by {defect:.2g}, products round by 2^-50 of lengths"
     return _changed(pair, changed, bound, why)
-
-
-def timed(pair: Pair) -> Iterator[Extreme]:
-    """Yield the pair with velocities times k, and the duration divided by it."""
-    if pair.duration == 0:
-        return
-    for power in POWERS_OF_TWO:
-        for sign in (1, -1):
-            yield Extreme(
-                "time by 2^k",
-                f"2^{sign * power}",
-                2.0 ** (sign * power),
-                partial(_timed, pair, 2.0 ** (sign * power), is_binary=True),
-            )
-    for power in POWERS_OF_TEN:
-        for sign in (1, -1):
-            yield Extreme(
-                "time by 10^k",
-                f"1e{sign * power}",
-                float(f"1e{sign * power}"),
-                partial(_timed, pair, float(f"1e{sign * power}"), is_binary=False),
-            )
-
-
-def _timed(pair: Pair, factor: float, *, is_binary: bool) -> Changed:
-    tolerance = pair.accuracy.time_tolerance
-    with np.errstate(over="ignore", under="ignore"):
-        a, b = (
-            side._replace(velocity=side.velocity * factor, spin=side.spin * factor)
-            for side in pair.sides
-        )
-        duration = float(np.float64(pair.duration) / factor)
-        asked = None if tolerance is None else float(np.float64(tolerance) / factor)
-    finite = (duration, asked or 0.0)
-    is_finite = bool(np.isfinite(finite).all())
-    accuracy = replace(pair.accuracy, time_tolerance=asked) if is_finite else pair.accuracy
-    changed = Pair(a, b, duration, accuracy)
-    clock = Fraction(1) / Fraction(factor)
-    is_back = is_binary and all(
-        _is_clock_back(old, new, factor) for old, new in zip(pair.sides, changed.sides, strict=True)
-    )
-    if is_back and is_finite and Fraction(duration) == Fraction(pair.duration) * clock:
-        return Changed(changed, is_same=duration >= 2.0**-960, clock=clock)
-    tiny = 2.0**-1074 / factor
-    bound = sum(
-        side.off_by(
-            pair.duration,
-            velocity=2.0 * (UNIT * longest(side.velocity[None]) + tiny),
-            spin=2.0 * (UNIT * longest(side.spin[None]) + tiny),
-        )
-        for side in pair.sides
-    )
-    why = "velocities are off by 2^-53 of themselves, and this lasts the duration"
-    return Changed(changed, bound, why, clock=clock)
-
-
-def _is_clock_back(old: Side, new: Side, factor: float) -> bool:
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        return np.array_equal(old.velocity, new.velocity / factor) and np.array_equal(
-            old.spin, new.spin / factor
-        )
