@@ -66,8 +66,10 @@ def _time(row: Record) -> float:
 def _summary(record: Record) -> list[tuple[str, str]]:
     result, stats = record["result"], record["stats"]
     broken = result["claims_broken"]
-    claims = f"{count(result['claims_checked'])} checked, "
-    claims += f"{count(broken)} BROKEN: a fault of obbtree" if broken else "all true"
+    checked = result["claims_checked"]
+    claims = f"{count(checked)} checked, all true" if checked else "none checked"
+    if broken:
+        claims = f"{count(checked)} checked, {count(broken)} BROKEN: a fault of obbtree"
     rows = [
         *source_rows(record),
         ("reference", _reference(record)),
