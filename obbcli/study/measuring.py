@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import gc
-import math
 import time
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -18,14 +15,8 @@ from obbcli.question import duration_of
 from obbcli.results import Status
 from obbcli.study.building import Built, Trees
 from obbcli.study.claims import Judge
-from obbcli.study.settings import (
-    Build,
-    Scale,
-    Setting,
-    levels_of,
-    plan,
-    reference_of,
-)
+from obbcli.study.settings import Build, Scale, Setting, levels_of, plan, reference_of
+from obbcli.study.taking_turns import fair_part, no_collections
 from obbcli.study.trials import Timing, Tradeoff, Trial, Unreached, front_of
 
 if TYPE_CHECKING:
@@ -130,7 +121,7 @@ class Study:
         self._unreached = dict.fromkeys(planned, "the budget ended before")
         if not self._ask_reference():
             return
-        with _no_collections():
+        with no_collections():
             self._first_calls(planned, _FIRST_SHARE, show)
             self._take_turns(_EARLY_ROUNDS, _EARLY_SHARE, show)
             self._first_calls(self._crossed(), _CROSSED_SHARE, show)
@@ -231,7 +222,7 @@ class Study:
         entries = list(self._entries.values())
         costs = [entry.timing.median for entry in entries]
         missing = [max(rounds - len(entry.times), 0) for entry in entries]
-        most = _fair_part([c * m for c, m in zip(costs, missing, strict=True)], share * self._left)
+        most = fair_part([c * m for c, m in zip(costs, missing, strict=True)], share * self._left)
         turns = [int(min(m, most / c)) for c, m in zip(costs, missing, strict=True)]
         for turn in range(max(turns, default=0)):
             first = turn % len(entries)
@@ -296,17 +287,6 @@ def _seconds(budget: float) -> float:
         raise MotionError("budget", fault.fault, fault.remedy) from fault
 
 
-def _fair_part(costs: Iterable[float], available: float) -> float:
-    """Return the most that each may take, so that together they take what is available."""
-    ordered = sorted(costs)
-    for index, cost in enumerate(ordered):
-        sharers = len(ordered) - index
-        if cost * sharers > available:
-            return max(available, 0.0) / sharers
-        available -= cost
-    return math.inf
-
-
 def _turns(motion: Motion) -> bool:
     return motion.is_turning or (isinstance(motion, PathMotion) and not motion.is_at_rest)
 
@@ -317,16 +297,3 @@ def _was_cut(answer: FirstContact, accuracy: Accuracy, seconds: float) -> bool:
         return False
     is_late = accuracy.timeout is not None and seconds >= accuracy.timeout
     return not is_late and answer.stats.pops < accuracy.max_iterations
-
-
-@contextmanager
-def _no_collections() -> Iterator[None]:
-    """Keep the garbage collector from taking its time inside one call or another."""
-    was_on = gc.isenabled()
-    gc.collect()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()

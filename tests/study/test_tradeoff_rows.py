@@ -16,6 +16,7 @@ from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Sta
 from obbcli.study import measuring
 from obbcli.study.measuring import Study
 from obbcli.study.settings import Build, Scale
+from obbcli.study.taking_turns import fair_part
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -252,9 +253,9 @@ def test_budgets_that_are_no_number_are_refused(budget):
 
 
 def test_slow_settings_take_no_more_than_their_part():
-    assert measuring._fair_part([1.0, 2.0, 3.0], 10.0) == math.inf
-    assert measuring._fair_part([1.0, 100.0, 100.0], 11.0) == 5.0
-    assert measuring._fair_part([], 1.0) == math.inf
+    assert fair_part([1.0, 2.0, 3.0], 10.0) == math.inf
+    assert fair_part([1.0, 100.0, 100.0], 11.0) == 5.0
+    assert fair_part([], 1.0) == math.inf
 
 
 def test_default_build_is_that_of_trees():
