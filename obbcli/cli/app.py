@@ -20,6 +20,7 @@ _COMMANDS = {
     "tradeoff": "tradeoff",
     "build": "build",
     "info": "info",
+    "schema": "schema",
 }
 
 _WELCOME = """\

@@ -133,6 +133,8 @@ def seconds_part(seconds: Mapping[str, float]) -> dict[str, float]:
 def error_part(error: ObbError, code: int) -> Record:
     """Return an error as its JSON object."""
     return {
+        "schema": f"obbtree/error/{SCHEMA_VERSION}",
+        "tool_version": __version__,
         "error": error.fault,
         "kind": type(error).__name__,
         "code": code,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from cube_files import cube, obj, stl
+from schemas import require_valid, require_valid_lines
 
 from obbcli.cli import main
 
@@ -41,11 +42,17 @@ class Ended:
 
 @pytest.fixture
 def obbtree(capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
-    """Return what runs a command line in this process."""
+    """Return what runs a command line in this process, and holds documents against schemas."""
 
     def run(*words: object) -> Ended:
         code = main([str(word) for word in words])
         streams = capsys.readouterr()
+        if "--json" in words and "schema" not in words and streams.out:
+            require_valid(json.loads(streams.out))
+        if "--json" in words:
+            for line in streams.err.splitlines():
+                if line.startswith("{"):
+                    require_valid(json.loads(line), "error")
         return Ended(code, streams.out, streams.err)
 
     return run
@@ -63,6 +70,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def swept(path: Path) -> list[Any]:
     """Return the rows of a results file."""
+    require_valid_lines(path.read_text())
     header, *rows = [json.loads(line) for line in path.read_text().splitlines()]
     assert header["schema"] == "obbtree/sweep/1"
     assert [row["row"] for row in rows] == list(range(len(rows)))

@@ -1,0 +1,166 @@
+"""Schemas of what questions about two bodies, and about scenes, answer."""
+
+from __future__ import annotations
+
+from obbcli.report.schema.shared import (
+    CONTACT_FIELDS,
+    COUNTERS,
+    PAIR,
+    PATH_FIELDS,
+    RIGID_FIELDS,
+    SECONDS,
+    STATUS,
+    document,
+)
+from obbcli.report.schema.words import (
+    AMOUNT,
+    COUNT,
+    FLAG,
+    TEXT,
+    VECTOR,
+    Schema,
+    documented,
+    list_of,
+    or_null,
+    record,
+    ref,
+    told,
+    tuple_of,
+    word_of,
+)
+from obbcli.results import Distance
+from obbcli.scene.results import BodyStats, SceneContact, SceneStats
+from obbcli.verdict import Collision
+
+_PAIR_OF_TRIANGLES = tuple_of(COUNT, COUNT)
+_SOLID = told(FLAG, "whether a body inside the other counts as contact")
+_FATES = ("static", "ignored", "apart_by_bounds", "apart_by_trees", "in_contact", "unresolved")
+
+
+def collide() -> Schema:
+    """Return the schema of `obbtree collide`."""
+    fields = documented(
+        Collision,
+        {
+            "status": STATUS,
+            "collides": told(or_null(FLAG), "whether they touch; null where unresolved"),
+            "witness": or_null(_PAIR_OF_TRIANGLES),
+            "approximate": FLAG,
+            "error_bound": AMOUNT,
+            "contained": or_null(word_of(("a", "b"))),
+        },
+    )
+    pairs = {
+        "pairs": told(list_of(_PAIR_OF_TRIANGLES), "row of A, row of B, sorted; with --all-pairs"),
+        "pairs_complete": told(FLAG, "whether these are all"),
+    }
+    return _answer("collide", record(fields | pairs, optional=pairs), solid=_SOLID)
+
+
+def first_contact() -> Schema:
+    """Return the schema of `obbtree first-contact`."""
+    listed = {
+        "contacts": told(list_of(ref("contact")), "earliest first; with --all-contacts, --limit"),
+        "contacts_complete": told(FLAG, "whether these are all"),
+        "contacts_unresolved_after": told(
+            or_null(AMOUNT), "s; where a limit ended the list: all contacts before it are there"
+        ),
+    }
+    result = record(CONTACT_FIELDS | listed, optional=listed)
+    return _answer("first-contact", result, solid=_SOLID)
+
+
+def distance() -> Schema:
+    """Return the schema of `obbtree distance`."""
+    fields = documented(
+        Distance,
+        {
+            "distance": AMOUNT,
+            "bounds": tuple_of(AMOUNT, AMOUNT),
+            "point_a": VECTOR,
+            "point_b": VECTOR,
+            "triangle_a": COUNT,
+            "triangle_b": COUNT,
+        },
+    )
+    ended = told(FLAG, "whether the search ended before a limit")
+    return _answer("distance", record(fields | {"complete": ended}))
+
+
+def _answer(name: str, result: Schema, **parts: Schema) -> Schema:
+    return document(
+        name,
+        PAIR,
+        motion=ref("motion"),
+        accuracy=ref("accuracy"),
+        **parts,
+        result=result,
+        stats=ref("stats"),
+    )
+
+
+def scene() -> Schema:
+    """Return the schema of `obbtree scene`."""
+    inputs = record(
+        {"scene": ref("source"), "meshes": told(list_of(ref("source")), "of the bodies, each once")}
+    )
+    return document(
+        "scene",
+        inputs,
+        duration=told(AMOUNT, "s"),
+        bodies=list_of({"oneOf": [_body(RIGID_FIELDS), _body(PATH_FIELDS)]}),
+        ignore=list_of(_IGNORE),
+        accuracy=ref("accuracy"),
+        result=_scene_result(),
+        stats=_scene_stats(),
+    )
+
+
+_IGNORE = {
+    "oneOf": [
+        record({"bodies": told(list_of(TEXT, 2), "the names of two bodies")}),
+        record({"groups": told(list_of(TEXT), "of bodies in this group, or in these two")}),
+    ]
+}
+
+
+def _body(movement: dict[str, Schema]) -> Schema:
+    head = {
+        "name": TEXT,
+        "mesh": told(COUNT, "which of inputs.meshes"),
+        "static": told(FLAG, "whether pairs of static bodies are left out"),
+        "group": or_null(TEXT),
+    }
+    return record(head | movement)
+
+
+def _scene_result() -> Schema:
+    names = documented(SceneContact, {"body_a": TEXT, "body_b": TEXT})
+    open_pair = names | {"time": told(AMOUNT, "s; nothing is known of the pair after it")}
+    return record(
+        {
+            "status": STATUS,
+            "time": told(or_null(AMOUNT), "s; of the earliest contact"),
+            "approximate": told(FLAG, "whether any contact, or being apart, is not proven"),
+            "contacts": told(list_of(record(names | CONTACT_FIELDS)), "earliest first"),
+            "contacts_complete": told(FLAG, "whether these are all"),
+            "unresolved": told(list_of(record(open_pair)), "pairs that a limit left open"),
+            "interrupted": told(FLAG, "whether Ctrl-C ended the search"),
+        }
+    )
+
+
+def _scene_stats() -> Schema:
+    counts = dict.fromkeys(("pairs", *_FATES, "later", *COUNTERS), COUNT)
+    body = documented(
+        BodyStats,
+        {
+            "name": TEXT,
+            "triangle_count": or_null(COUNT),
+            "triangles_loaded": COUNT,
+            "nodes_built": COUNT,
+            "nodes_possible": or_null(COUNT),
+        },
+    )
+    others = {"bodies": list_of(record(body)), "seconds": SECONDS}
+    return record(documented(SceneStats, counts | others))

@@ -1,0 +1,175 @@
+"""Schemas of what commands say of files: `info`, `build`, `sweep` and its results, and errors."""
+
+from __future__ import annotations
+
+from obbcli.mesh.grain import Grain
+from obbcli.report.record import SCHEMA_VERSION
+from obbcli.report.schema.shared import (
+    BUILD_FIELDS,
+    CONTACT_FIELDS,
+    COUNTERS,
+    SECONDS,
+    document,
+)
+from obbcli.report.schema.words import (
+    AMOUNT,
+    COUNT,
+    FLAG,
+    SHA256,
+    TEXT,
+    VECTOR,
+    Schema,
+    documented,
+    list_of,
+    or_null,
+    record,
+    ref,
+    table_of,
+    told,
+    word_of,
+)
+from obbcli.report.sweep import STATUSES
+from obbcli.treefacts import Level
+
+_FAULT = told(TEXT, "what was found and what was wanted")
+_PLACE = told(TEXT, "file and line, row or byte, or option")
+_REMEDY = told(TEXT, "what to do about it; empty where nothing can be said")
+
+
+def info() -> Schema:
+    """Return the schema of `obbtree info`."""
+    result = {
+        "kind": word_of(("mesh", "tree")),
+        "triangle_count": COUNT,
+        "vertex_count": COUNT,
+        "bounds": told(list_of(VECTOR, 2), "lowest and highest coordinates, mesh units"),
+        "size": told(or_null(AMOUNT), "diagonal, mesh units; null beyond the largest double"),
+        "surface_centroid": told(VECTOR, "weighted by area; the default pivot"),
+        "is_watertight": told(FLAG, "whether every edge has two triangles that agree on it"),
+        "degenerate_count": told(COUNT, "triangles without area"),
+        "duplicate_count": told(COUNT, "triangles that are there already"),
+        "accuracy": _grain(),
+        "tree": or_null(_tree()),
+        "check": told(or_null(word_of(("passed",))), "null where --check was not asked for"),
+    }
+    inputs = record({"file": ref("source")})
+    return document("info", inputs, result=record(result), stats=record({"seconds": SECONDS}))
+
+
+def _grain() -> Schema:
+    numbers = ("spacing", "shortest_edge", "smallest_altitude", "largest_aspect")
+    fields: dict[str, Schema] = {
+        "digits": word_of(("float32", "float64")),
+        **dict.fromkeys(numbers, or_null(AMOUNT)),
+        "sliver_count": COUNT,
+        "extents_ratio": or_null(AMOUNT),
+    }
+    warnings = {"warnings": told(list_of(TEXT), "what of it answers may suffer from")}
+    return told(record(documented(Grain, fields) | warnings), "What the mesh itself limits.")
+
+
+def _tree() -> Schema:
+    level = documented(Level, {"box_count": COUNT, "leaf_count": COUNT, "volume": or_null(AMOUNT)})
+    return record(
+        BUILD_FIELDS
+        | {
+            "node_count": COUNT,
+            "possible_node_count": COUNT,
+            "nbytes": COUNT,
+            "bytes_per_triangle": AMOUNT,
+            "source": told(or_null(TEXT), "the mesh file it was built from"),
+            "source_sha256": or_null(SHA256),
+            "source_state": told(
+                or_null(word_of(("unchanged", "changed", "not found"))),
+                "of the mesh file beside it; null where it has no name",
+            ),
+            "tool_version": told(or_null(TEXT), "of the obbtree that built it"),
+            "levels": told(list_of(record(level)), "the root first"),
+        }
+    )
+
+
+def build() -> Schema:
+    """Return the schema of `obbtree build`."""
+    failed = record({"output": {"type": "null"}, "error": TEXT})
+    written = record(
+        {
+            "output": told(TEXT, "the tree file"),
+            "error": {"type": "null"},
+            "triangle_count": COUNT,
+            "vertex_count": COUNT,
+            "node_count": COUNT,
+            "level_count": COUNT,
+            "file_bytes": COUNT,
+            "bytes_per_triangle": AMOUNT,
+        }
+    )
+    error = record({"path": TEXT, "error": _FAULT, "where": _PLACE, "remedy": _REMEDY})
+    result = {
+        "files": told(list_of({"oneOf": [written, failed]}), "one an input"),
+        "errors": told(list_of(error), "of the inputs that have no tree"),
+    }
+    stats = record({"seconds": told(list_of(SECONDS), "one an input")})
+    return document(
+        "build",
+        list_of(ref("source")),
+        options=ref("build"),
+        result=record(result),
+        stats=stats,
+    )
+
+
+_QUERIES = record(
+    {"path": TEXT, "sha256": or_null(SHA256), "format": word_of(("csv", "jsonl"))},
+    description="The file of questions.",
+)
+_SWEEP = {
+    "inputs": record({"a": ref("source"), "b": ref("source"), "queries": _QUERIES}),
+    "options": table_of({}, "Poses, motion and duration of rows that leave them out."),
+    "accuracy": ref("accuracy"),
+    "digest": told(SHA256, "of all that decides answers"),
+}
+
+
+def sweep() -> Schema:
+    """Return the schema of the first line of a sweep's results."""
+    return document("sweep", **_SWEEP)
+
+
+def sweep_summary() -> Schema:
+    """Return the schema of what `obbtree sweep --json` prints."""
+    result = {
+        "output": told(TEXT, "the file of results"),
+        "row_count": told(COUNT, "how many rows it has"),
+        "resumed_from": told(COUNT, "how many it had before"),
+        "statuses": told(record(dict.fromkeys(STATUSES, COUNT)), "rows by status"),
+        "error_count": told(COUNT, "rows that could not be asked"),
+    }
+    return document(
+        "sweep-summary", **_SWEEP, result=record(result), stats=record({"seconds": SECONDS})
+    )
+
+
+def sweep_row() -> Schema:
+    """Return the schema of all other lines of a sweep's results."""
+    head = {
+        "row": told(COUNT, "of the file of questions, from 0"),
+        "id": {"description": "what the row calls itself; null where it has no name"},
+    }
+    stats = {"stats": record(dict.fromkeys(COUNTERS, COUNT))}
+    error = {"error": record({"where": _PLACE, "fault": _FAULT, "remedy": _REMEDY})}
+    return {"oneOf": [record(head | CONTACT_FIELDS | stats), record(head | error)]}
+
+
+def error() -> Schema:
+    """Return the schema of what `--json` writes to standard error where a command fails."""
+    fields = {
+        "schema": {"const": f"obbtree/error/{SCHEMA_VERSION}"},
+        "tool_version": TEXT,
+        "error": _FAULT,
+        "kind": told(TEXT, "the class of the error in Python"),
+        "code": told({"type": "integer", "minimum": 1, "maximum": 255}, "the exit code"),
+        "where": _PLACE,
+        "remedy": _REMEDY,
+    }
+    return record(fields)

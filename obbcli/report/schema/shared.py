@@ -1,0 +1,158 @@
+"""Schemas of the parts that several documents share; a document holds those that it refers to."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
+from obbcli.report.record import SCHEMA_VERSION
+from obbcli.report.schema.words import (
+    AMOUNT,
+    COUNT,
+    FLAG,
+    NUMBER,
+    SHA256,
+    TEXT,
+    VECTOR,
+    Schema,
+    documented,
+    list_of,
+    or_null,
+    record,
+    ref,
+    table_of,
+    told,
+    tuple_of,
+    word_of,
+)
+from obbcli.results import Contact
+from obbcli.verdict import QueryStats, Status
+
+_PARTS = ("vertex", "edge", "face")
+FEATURES = (*(f"{a}-{b}" for a in _PARTS for b in _PARTS), "box")
+EVIDENCES = ("intersecting", "within_tolerance", "boxes", "sampled")
+
+STATUS = told(
+    word_of(status.value for status in Status),
+    "How the question ended. separated: no contact in the whole closed interval, proven unless "
+    "approximate. contact: first contact at a time later than 0. overlap_at_start: contact at "
+    "t = 0, touching included. unresolved: a limit was reached first.",
+)
+TIME_BOUNDS = tuple_of(AMOUNT, or_null(AMOUNT))
+SECONDS = table_of(AMOUNT, "s of wall time by stage")
+
+ACCURACY_FIELDS = documented(
+    Accuracy,
+    {
+        "time_tolerance": or_null(AMOUNT),
+        "distance_tolerance": or_null(AMOUNT),
+        "max_depth_a": or_null(COUNT),
+        "max_depth_b": or_null(COUNT),
+        "leaves": word_of(get_args(Leaves)),
+        "method": word_of(get_args(Method)),
+        "integrator": word_of(get_args(Integrator)),
+        "steps": COUNT,
+        "clearance": AMOUNT,
+        "max_iterations": COUNT,
+        "timeout": or_null(AMOUNT),
+    },
+)
+
+CONTACT_FIELDS = documented(
+    Contact,
+    {
+        "status": STATUS,
+        "time": or_null(AMOUNT),
+        "time_bounds": or_null(TIME_BOUNDS),
+        "evidence": or_null(word_of(EVIDENCES)),
+        "point": or_null(VECTOR),
+        "point_a": or_null(VECTOR),
+        "point_b": or_null(VECTOR),
+        "normal": or_null(VECTOR),
+        "normal_a": or_null(VECTOR),
+        "normal_b": or_null(VECTOR),
+        "triangle_a": or_null(COUNT),
+        "triangle_b": or_null(COUNT),
+        "feature": or_null(word_of(FEATURES)),
+        "distance": or_null(AMOUNT),
+        "contained": or_null(word_of(("a", "b"))),
+        "approximate": FLAG,
+        "error_bound": AMOUNT,
+    },
+)
+
+# What every kind of search counts.
+COUNTERS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
+STATS_FIELDS = documented(
+    QueryStats,
+    dict.fromkeys(
+        (*COUNTERS, *(f"nodes_{which}_{side}" for which in ("built", "possible") for side in "ab")),
+        COUNT,
+    )
+    | {"seconds": SECONDS},
+)
+
+_POSE = record(
+    {
+        "rotation": told(list_of(VECTOR, 3), "matrix, by rows"),
+        "translation": told(VECTOR, "mesh units"),
+    },
+    description="x(0) = rotation p + translation",
+)
+RIGID_FIELDS = {
+    "pose": ref("pose"),
+    "linear_velocity": told(VECTOR, "mesh units a second, world frame"),
+    "angular_velocity": told(VECTOR, "rad/s, world frame"),
+    "pivot": told(VECTOR, "where the axis passes at t = 0, world coordinates"),
+}
+PATH_FIELDS = {
+    "pose": ref("pose"),
+    "times": told(list_of(NUMBER), "s, rising"),
+    "poses": told(list_of(ref("pose")), "one a time; between two, both velocities are constant"),
+}
+
+BUILD_FIELDS = {
+    "fit": told(TEXT, "how boxes are fitted"),
+    "split": told(TEXT, "how boxes are divided"),
+    "leaf_size": told(COUNT, "triangles that a leaf holds at most"),
+    "max_depth": told(or_null(COUNT), "the level at which no box is divided; null: none"),
+}
+
+DEFINITIONS: dict[str, Schema] = {
+    "source": record(
+        {
+            "path": told(TEXT, "as it was written; - is standard input"),
+            "sha256": told(or_null(SHA256), "of the file's bytes; null where they were not read"),
+            "triangle_count": told(or_null(COUNT), "null where there is none to count"),
+        },
+        description="A file that was asked about.",
+    ),
+    "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),
+    "stats": record(STATS_FIELDS, description="What the answer cost; not the same every time."),
+    "contact": record(CONTACT_FIELDS, description="When and where two triangles first touch."),
+    "pose": _POSE,
+    "rigid": record(RIGID_FIELDS, description="Constant linear and angular velocity."),
+    "path": record(PATH_FIELDS, description="A path through given poses."),
+    "body": {"oneOf": [ref("rigid"), ref("path")]},
+    "motion": record(
+        {
+            "duration": told(AMOUNT, "s; asked about is 0 <= t <= duration"),
+            "a": ref("body"),
+            "b": ref("body"),
+        },
+        description="The motion as understood.",
+    ),
+    "build": record(BUILD_FIELDS, description="What shaped a tree."),
+}
+
+PAIR = record({"a": ref("source"), "b": ref("source")})
+
+
+def document(name: str, inputs: Schema, **parts: Schema) -> Schema:
+    """Return the schema of a document, its parts in the order given."""
+    head: dict[str, Schema] = {
+        "schema": {"const": f"obbtree/{name}/{SCHEMA_VERSION}"},
+        "tool_version": told(TEXT, "of the obbtree that wrote it"),
+        "inputs": inputs,
+    }
+    return record(head | parts)

@@ -1,0 +1,179 @@
+"""Schemas of what `obbtree tradeoff` and `obbtree stability` measure."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from obbcli.report.schema.shared import (
+    CONTACT_FIELDS,
+    PAIR,
+    SECONDS,
+    STATUS,
+    TIME_BOUNDS,
+    document,
+)
+from obbcli.report.schema.words import (
+    AMOUNT,
+    COUNT,
+    FLAG,
+    NUMBER,
+    TEXT,
+    Schema,
+    documented,
+    list_of,
+    or_null,
+    record,
+    ref,
+    table_of,
+    told,
+    tuple_of,
+    word_of,
+)
+from obbcli.study.rows import Outcome, Row
+from obbcli.study.trials import Timing, Trial
+
+_COMMAND = told(TEXT, "the command line that asks with this setting")
+_ROW_NUMBER = or_null(COUNT)
+
+
+def tradeoff() -> Schema:
+    """Return the schema of `obbtree tradeoff`."""
+    result = {
+        "reference": told(
+            record(_answered("status", "time", "time_bounds", "evidence", "distance")),
+            "The certified answer that errors are measured against.",
+        ),
+        "rows": told(list_of(record(_trial())), "the settings that were measured"),
+        "unreached": told(
+            list_of(record(_SETTING | {"why": TEXT})), "settings that the budget did not reach"
+        ),
+        "prices": told(list_of(record(_PRICE)), "what an error costs; empty of bodies at rest"),
+        "recommended": told(list_of(_RECOMMENDED), "one a limit that was given"),
+        "claims_checked": told(COUNT, "of all rows"),
+        "claims_broken": told(COUNT, "of them, that turned out untrue: should be 0"),
+        "interrupted": told(FLAG, "whether Ctrl-C ended it"),
+    }
+    budget = told(AMOUNT, "s that it was allowed")
+    stats = record({"budget": budget, "seconds": SECONDS})
+    return _study("tradeoff", record(result), stats)
+
+
+_AS_THEY_CAME = {"type": "object", "maxProperties": 0, "description": "The trees as they came."}
+_BUILD = {"oneOf": [ref("build"), _AS_THEY_CAME]}
+_SETTING = {"command": _COMMAND, "build": _BUILD, "accuracy": ref("accuracy")}
+_PRICE = {
+    "share_of_duration": NUMBER,
+    "max_error": told(AMOUNT, "s; that share"),
+    "cheapest": told(_ROW_NUMBER, "the fastest row that errs by no more"),
+    "cheapest_proven": told(_ROW_NUMBER, "the fastest of those that prove it"),
+    "cheapest_sampled": told(_ROW_NUMBER, "the fastest of those that sample"),
+    "ratio_seconds": told(or_null(AMOUNT), "the default question's time by that of the sampled"),
+}
+_RECOMMENDED = record(
+    {
+        "limits": table_of(AMOUNT, "what was asked for: max_error, s; max_gap; max_time, s"),
+        "row": told(_ROW_NUMBER, "that fits; null where none does"),
+        "row_proven": told(_ROW_NUMBER, "that fits and is a proof; null where none does"),
+    }
+)
+
+
+def _trial() -> dict[str, Schema]:
+    """Return the fields of a setting that was measured."""
+    timing = documented(
+        Timing,
+        {
+            "median": AMOUNT,
+            "low_quartile": AMOUNT,
+            "high_quartile": AMOUNT,
+            "interval": or_null(tuple_of(AMOUNT, AMOUNT)),
+            "rounds": COUNT,
+        },
+    )
+    measured = documented(
+        Trial,
+        {
+            "time_error": or_null(NUMBER),
+            "gap": or_null(AMOUNT),
+            "claims_checked": COUNT,
+            "faults": list_of(TEXT),
+            "on_front": FLAG,
+            "tree_bytes": COUNT,
+            "build_seconds": AMOUNT,
+        },
+    )
+    return (
+        _SETTING
+        | _answered("status", "time", "time_bounds", "evidence", "distance", "approximate")
+        | {
+            "error_bound": told(or_null(AMOUNT), "mesh units; null beyond the largest double"),
+            "verdict_wrong": told(FLAG, "whether it says contact where there is none, or none"),
+            "box_tests": COUNT,
+            "triangle_tests": COUNT,
+            "warm_seconds": told(record(timing), "s a call"),
+        }
+        | measured
+    )
+
+
+def stability() -> Schema:
+    """Return the schema of `obbtree stability`."""
+    result = {
+        "answer": told(record(CONTACT_FIELDS), "To the question itself."),
+        "extreme_count": told(COUNT, "how many extremes there were to try"),
+        "tried_count": told(COUNT, "how many were tried"),
+        "broken_count": told(COUNT, "how many did not hold: should be 0"),
+        "interrupted": told(FLAG, "whether Ctrl-C ended it"),
+        "families": list_of(record(_FAMILY)),
+        "rows": told(list_of(record(_extreme())), "one an extreme"),
+    }
+    return _study("stability", record(result), record({"seconds": SECONDS}))
+
+
+_FAMILY = {
+    "family": told(TEXT, "what was changed"),
+    "tried_count": COUNT,
+    "outcomes": record(dict.fromkeys(get_args(Outcome), COUNT)),
+    "same_bits_end_at": told(or_null(TEXT), "the first extreme that gave other bits"),
+    "why": told(or_null(TEXT), "what they come from"),
+}
+
+
+def _extreme() -> dict[str, Schema]:
+    """Return the fields of an extreme."""
+    beyond = "; null beyond the largest double"
+    fields = documented(
+        Row,
+        {
+            "family": TEXT,
+            "extreme": TEXT,
+            "magnitude": or_null(NUMBER),
+            "expected": word_of(("same bits", "within bound", "proven")),
+            "bound": or_null(AMOUNT),
+            "why": TEXT,
+            "status": or_null(STATUS),
+            "time_bounds": or_null(TIME_BOUNDS),
+            "difference": or_null(AMOUNT),
+            "outcome": word_of(get_args(Outcome)),
+            "held": FLAG,
+            "reason": TEXT,
+        },
+    )
+    for name in ("magnitude", "bound"):
+        fields[name] = told(fields[name], fields[name].get("description", "") + beyond)
+    return fields
+
+
+def _answered(*names: str) -> dict[str, Schema]:
+    return {name: CONTACT_FIELDS[name] for name in names}
+
+
+def _study(name: str, result: Schema, stats: Schema) -> Schema:
+    return document(
+        name,
+        PAIR,
+        motion=ref("motion"),
+        accuracy=ref("accuracy"),
+        result=result,
+        stats=stats,
+    )
