@@ -45,7 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if "_OBBTREE_COMPLETE" in os.environ:
         # The shell asks for completions: click answers and exits by itself.
         app.main(words, prog_name=PROGRAM)
-    return guarded(lambda: run(words), words)
+    # A copy, because click empties the list that it parses.
+    return guarded(lambda: run(list(words)), words)
 
 
 def run(words: list[str]) -> int:

@@ -61,25 +61,42 @@ def guarded(command: Callable[[], int], words: Sequence[str]) -> int:
     except click.exceptions.Exit as end:
         return end.exit_code
     except (Exception, KeyboardInterrupt) as fault:  # noqa: BLE001  # the boundary
-        if "--debug" in words:
+        trace = None
+        if is_among("--debug", words):
             # Imported where faults are rare, like all that only faults need: start-up counts.
             import traceback
 
-            traceback.print_exc()
-        return report(as_error(fault), as_json="--json" in words)
+            trace = "".join(traceback.format_exception(fault))
+        return report(as_error(fault), as_json=is_among("--json", words), trace=trace)
     return code
 
 
-def report(error: ObbError, *, as_json: bool) -> ExitCode:
-    """Write an error to stderr and return its exit code."""
+def is_among(flag: str, words: Sequence[str]) -> bool:
+    """Return whether a flag stands on a command line, be it that the line cannot be parsed.
+
+    What cannot be parsed is told by its words alone: an option that misses a value may have taken
+    the flag for one. After `--` stand names of files.
+    """
+    return flag in (words[: words.index("--")] if "--" in words else words)
+
+
+def report(error: ObbError, *, as_json: bool, trace: str | None = None) -> ExitCode:
+    """Write an error to stderr, as one line or as one JSON object, and return its exit code.
+
+    Args:
+        error: what is told.
+        as_json: which of the two.
+        trace: the traceback, where it was asked for.
+    """
     code = exit_code(error)
     if as_json:
         from obbcli.report.document import to_json
-        from obbcli.report.record import error_part
+        from obbcli.report.record import error_document
 
-        note(to_json(error_part(error, int(code))).rstrip())
+        note(to_json(error_document(error, int(code), trace)).rstrip())
     else:
-        note(f"error: {error}" if error.where else f"error: {error.fault}; {error.remedy}")
+        told = str(error).removeprefix(": ")  # what has no place
+        note(f"{trace or ''}error: {told}")
     return code
 
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from obbcli.cli.boundary import OutputError, UsageError, as_error, note, report, writing
+from obbcli.cli.boundary import OutputError, UsageError, as_error, report, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options import Command, common_options, gathered, option
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, remark
 from obbcli.cli.progress import bar
 from obbcli.cli.types import PathName, Whole
 from obbcli.errors import MeshError, ObbError
@@ -140,10 +140,9 @@ def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -
     if common.json or failed < len(files):
         record = build_record(meshes, files, _options_part(how))
         emit(record, build_tables, common._replace(output=None), bare=lambda _: "")
-    # As JSON the errors on stderr are objects, and the document counts them.
-    if len(meshes) > 1 and failed and not (common.quiet or common.json):
+    if len(meshes) > 1 and failed:
         verb = "was" if failed == 1 else "were"
-        note(f"note: {failed} of {len(meshes)} trees {verb} not built")
+        remark(f"{failed} of {len(meshes)} trees {verb} not built", common)
     return code
 
 

@@ -14,9 +14,9 @@ from obbcli.cli.asking import (
     run,
     with_load_time,
 )
-from obbcli.cli.boundary import UsageError, note
+from obbcli.cli.boundary import UsageError
 from obbcli.cli.options import Command, option
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, remark
 from obbcli.cli.types import Whole
 
 if TYPE_CHECKING:
@@ -138,5 +138,5 @@ def _show(record: Record, common: CommonOptions) -> None:
 
     result = record["result"]
     emit(record, collide_tables, common, bare=collide_bare)
-    if not (result.get("pairs_complete", True) or common.quiet):
-        note(f"note: {len(result['pairs'])} pairs are listed, more exist; raise --limit")
+    if not result.get("pairs_complete", True):
+        remark(f"{len(result['pairs'])} pairs are listed, more exist; raise --limit", common)

@@ -15,9 +15,9 @@ from obbcli.cli.asking import (
     run,
     with_load_time,
 )
-from obbcli.cli.boundary import UsageError, note
+from obbcli.cli.boundary import UsageError
 from obbcli.cli.options import Command, option
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, remark
 from obbcli.cli.types import Whole
 
 if TYPE_CHECKING:
@@ -108,5 +108,5 @@ def _show(record: Record, common: CommonOptions) -> None:
 
     emit(record, first_contact_tables, common, bare=first_contact_bare)
     result = record["result"]
-    if not (result.get("contacts_complete", True) or common.quiet):
-        note(f"note: {len(result['contacts'])} contacts are listed{open_end(result)}")
+    if not result.get("contacts_complete", True):
+        remark(f"{len(result['contacts'])} contacts are listed{open_end(result)}", common)

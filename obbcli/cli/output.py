@@ -6,7 +6,14 @@ import io
 import sys
 from typing import TYPE_CHECKING, TextIO
 
-from obbcli.cli.boundary import OutputError, writing, writing_stdout
+from obbcli.cli.boundary import (
+    CancelledError,
+    OutputError,
+    note,
+    report,
+    writing,
+    writing_stdout,
+)
 from obbcli.files import write_whole
 
 if TYPE_CHECKING:
@@ -48,6 +55,23 @@ def emit(
         write_stdout(text)
     else:
         write_file(common.output, text)
+
+
+def remark(text: str, common: CommonOptions) -> None:
+    """Write a note to stderr, unless nobody reads it: documents say the same in their fields."""
+    if not (common.quiet or common.json):
+        note(f"note: {text}")
+
+
+def tell_interrupted(kept: str, common: CommonOptions) -> None:
+    """Say of a command that Ctrl-C ended what its answer holds.
+
+    As JSON this is an error as of every interrupted command, besides the document.
+    """
+    if common.json:
+        report(CancelledError("", "interrupted", kept), as_json=True)
+    else:
+        remark(f"interrupted; {kept}", common)
 
 
 def write_stdout(text: str) -> None:

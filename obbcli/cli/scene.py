@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from obbcli.cli.asking import QUESTION
-from obbcli.cli.boundary import ExitCode, UsageError, note
+from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.inputs import STDIN, keep_inputs, read_stdin
 from obbcli.cli.options import Command, common_options, option, verify_option
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import proving
 from obbcli.cli.question import accuracy_options, usage_errors
 from obbcli.cli.types import Finite, PathName, Whole
@@ -223,8 +223,8 @@ def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:
 
     emit(record, explained_tables if explains else scene_tables, common, bare=scene_bare)
     result = record["result"]
-    if result["interrupted"] and not common.quiet:
-        note(f"note: interrupted; unresolved pairs: {len(result['unresolved'])}")
+    if result["interrupted"]:
+        tell_interrupted(f"unresolved pairs: {len(result['unresolved'])}", common)
 
 
 def _exit_code(result: Record, *, asked: bool) -> int:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import click
 
 from obbcli.cli.asking import QUESTION, about_two, naming_options
-from obbcli.cli.boundary import ExitCode, OutputError, UsageError, note, writing
+from obbcli.cli.boundary import ExitCode, OutputError, UsageError, writing
 from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options import Command, option
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import trying
 from obbcli.cli.types import PathName
 from obbcli.files import write_whole
@@ -76,8 +76,9 @@ def command(asked: Asked, plot: str | None) -> int:
     if plot is not None:
         _draw(record, plot)
     emit(record, stability_tables, asked.common, bare=stability_bare)
-    if studied.is_interrupted and not asked.common.quiet:
-        note(f"note: interrupted; not tried: {battery.count - len(battery.rows)} extremes")
+    if studied.is_interrupted:
+        not_tried = battery.count - len(battery.rows)
+        tell_interrupted(f"not tried: {not_tried} extremes", asked.common)
     return _exit_code(record["result"], asked=asked.exit_code)
 
 

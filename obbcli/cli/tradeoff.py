@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from obbcli.cli.asking import QUESTION, naming_options
-from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, note
+from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options import (
     Command,
@@ -19,7 +19,7 @@ from obbcli.cli.options import (
     option,
     verify_option,
 )
-from obbcli.cli.output import emit
+from obbcli.cli.output import emit, remark, tell_interrupted
 from obbcli.cli.progress import measuring
 from obbcli.cli.question import (
     AccuracyOptions,
@@ -271,7 +271,6 @@ def _show(record: Record, asked: _Asked) -> None:
 
     result, common = record["result"], asked.common
     if asked.wanted.plot is not None:
-        from obbcli.cli.boundary import writing
         from obbcli.files import write_whole
         from obbcli.report.tradeoff_plot import tradeoff_plot
 
@@ -279,13 +278,11 @@ def _show(record: Record, asked: _Asked) -> None:
         with writing(asked.wanted.plot):
             write_whole(asked.wanted.plot, tradeoff_plot(record, kind))
     emit(record, tradeoff_tables, common, bare=tradeoff_bare)
-    if common.quiet:
-        return
     if result["interrupted"]:
-        note("note: interrupted; what was measured by then is shown")
+        tell_interrupted("what was measured by then is shown", common)
     if result["reference"]["status"] == "unresolved":
-        note("note: no certified answer within the limits, so that no error is known; "
-             "raise --budget, --max-iterations or --timeout")  # fmt: skip
+        remark("no certified answer within the limits, so that no error is known; "
+               "raise --budget, --max-iterations or --timeout", common)  # fmt: skip
 
 
 def _exit_code(result: Record) -> int:

@@ -59,12 +59,12 @@ class Setting(NamedTuple):
 
 def document(command: str, inputs: Any, **parts: Any) -> Record:
     """Return a record of one command, its parts in the order given."""
-    head = {
-        "schema": f"obbtree/{command}/{SCHEMA_VERSION}",
-        "tool_version": __version__,
-        "inputs": inputs,
-    }
-    return head | parts
+    return _head(command) | {"inputs": inputs} | parts
+
+
+def _head(name: str) -> Record:
+    """Return how every document begins."""
+    return {"schema": f"obbtree/{name}/{SCHEMA_VERSION}", "tool_version": __version__}
 
 
 def answer_document(command: str, setting: Setting, result: Record, stats: QueryStats) -> Record:
@@ -130,16 +130,21 @@ def seconds_part(seconds: Mapping[str, float]) -> dict[str, float]:
     return {stage: float(value) for stage, value in seconds.items()}
 
 
-def error_part(error: ObbError, code: int) -> Record:
-    """Return an error as its JSON object."""
-    return {
-        "schema": f"obbtree/error/{SCHEMA_VERSION}",
-        "tool_version": __version__,
+def error_document(error: ObbError, code: int, trace: str | None = None) -> Record:
+    """Return an error as its document.
+
+    Args:
+        error: what is told.
+        code: the exit code.
+        trace: the traceback, which stands in the document where it was asked for.
+    """
+    return _head("error") | {
         "error": error.fault,
         "kind": type(error).__name__,
         "code": code,
-        "where": error.where,
-        "remedy": error.remedy,
+        "where": error.where or None,
+        "remedy": error.remedy or None,
+        **({} if trace is None else {"traceback": trace}),
     }
 
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
-
 import click
 import pytest
-from schemas import require_valid
 
 import obbcli.cli
 from obbcli import MeshError, MotionError, ObbError, SceneError, TreeFileError, UnresolvedError
@@ -48,15 +45,6 @@ def test_every_fault_is_one_line_and_a_code(capsys, fault, code):
     assert streams.err.startswith("error: ")
     assert streams.err.count("\n") == 1
     assert "Traceback" not in streams.err
-
-
-@pytest.mark.parametrize("fault", [MeshError("a", "b", "c"), ValueError("x"), KeyboardInterrupt()])
-def test_every_fault_is_one_object_as_json(capsys, fault):
-    code = guarded(lambda: fail(fault), ["--json"])
-
-    error = json.loads(capsys.readouterr().err)
-    require_valid(error, "error")
-    assert error["code"] == code
 
 
 def test_line_names_place_fault_and_remedy(capsys):

@@ -95,14 +95,16 @@ def test_collide_says_that_there_are_no_pairs(here, obbtree):
 
 
 def test_collide_limit_cuts_the_list_and_says_so(here, obbtree):
-    ended = obbtree("collide", "cube.stl", "touching.obj", "--all-pairs", "--limit", 3, "--json")
+    words = ("collide", "cube.stl", "touching.obj", "--all-pairs", "--limit", 3)
+
+    ended = obbtree(*words, "--json")
 
     pairs = ended.json["result"]["pairs"]
     assert len(pairs) == 3
     assert pairs == sorted(pairs)
     assert all(pair in all_pairs((1, 0, 0)) for pair in pairs)
     assert ended.json["result"]["pairs_complete"] is False
-    assert ended.err == "note: 3 pairs are listed, more exist; raise --limit\n"
+    assert obbtree(*words).err == "note: 3 pairs are listed, more exist; raise --limit\n"
 
 
 def test_collide_limit_that_cuts_nothing_says_nothing(here, obbtree):

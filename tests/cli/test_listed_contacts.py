@@ -108,7 +108,8 @@ def test_limit_cuts_the_list_of_the_first_contact(here, obbtree, limit, is_compl
     assert ended.json["result"]["contacts_complete"] is is_complete
     assert ended.json["result"]["contacts_unresolved_after"] is None
     assert ended.code == 0
-    assert ("more may follow: see --limit" in ended.err) is not is_complete
+    told = obbtree("first-contact", *words).err
+    assert ("more may follow: see --limit" in told) is not is_complete
 
 
 def test_limit_alone_goes_on_after_the_first_contact(here, obbtree):
@@ -137,17 +138,18 @@ def test_no_contact_lists_none(here, obbtree):
 # Most of the steps lead to the first of these contacts, and the last few to the others.
 @pytest.mark.parametrize(("share", "least"), [(0.0, 0), (0.5, 0), (0.99, 9)])
 def test_limit_of_steps_keeps_what_was_listed(obbtree, plain_pops, share, least):
-    words = (*GEARS, *TURNING, "--limit", 40, "--json")
-    whole = obbtree("first-contact", *words).json
+    words = (*GEARS, *TURNING, "--limit", 40)
+    whole = obbtree("first-contact", *words, "--json").json
     every = whole["result"]["contacts"]
     pops = plain_pops + int(share * (whole["stats"]["pops"] - plain_pops))
 
-    ended = obbtree("first-contact", *words, "--max-iterations", pops, "--exit-code")
+    limited = ("first-contact", *words, "--max-iterations", pops, "--exit-code")
+    ended = obbtree(*limited, "--json")
 
     result = ended.json["result"]
     after = result["contacts_unresolved_after"]
     assert ended.code == 4
-    assert "a limit was reached: complete only before" in ended.err
+    assert "a limit was reached: complete only before" in obbtree(*limited).err
     assert result["status"] == "contact"
     assert result["contacts_complete"] is False
     assert result["contacts"] == every[: len(result["contacts"])]

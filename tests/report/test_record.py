@@ -13,7 +13,7 @@ import pytest
 
 from obbcli import Body, Mesh, MeshError, Motion, Pose, __version__
 from obbcli.report.document import to_json
-from obbcli.report.record import document, error_part, file_sha256, finite, motion_part
+from obbcli.report.record import document, error_document, file_sha256, finite, motion_part
 from obbcli.report.table import Table, count, draw, length, seconds, size
 
 SQUARE = Mesh([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], [[0, 1, 2], [0, 2, 3]])
@@ -68,10 +68,12 @@ def test_duration_defaults_to_one_where_a_body_moves(velocity, duration, used):
     assert motion_part(bodies, duration)["duration"] == used
 
 
-def test_error_part_tells_place_fault_and_remedy_apart():
-    part = error_part(MeshError("gear.obj:12", "uses vertex 9 of 8", "count from 1"), 3)
+def test_error_document_tells_place_fault_and_remedy_apart():
+    part = error_document(MeshError("gear.obj:12", "uses vertex 9 of 8", "count from 1"), 3)
 
     assert part == {
+        "schema": "obbtree/error/1",
+        "tool_version": __version__,
         "error": "uses vertex 9 of 8",
         "kind": "MeshError",
         "code": 3,

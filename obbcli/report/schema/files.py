@@ -169,7 +169,8 @@ def error() -> Schema:
         "error": _FAULT,
         "kind": told(TEXT, "the class of the error in Python"),
         "code": told({"type": "integer", "minimum": 1, "maximum": 255}, "the exit code"),
-        "where": _PLACE,
-        "remedy": _REMEDY,
+        "where": told(or_null(TEXT), "file and line, row or byte, or option; null where none is"),
+        "remedy": told(or_null(TEXT), "what to do about it; null where nothing can be said"),
+        "traceback": told(TEXT, "only with --debug: where in obbtree the error was raised"),
     }
-    return record(fields)
+    return record(fields, optional=("traceback",))
