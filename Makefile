@@ -23,12 +23,13 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check lint format-check types stub-check stub bench sanitize sanitize-threads same-bits clean
+.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
 	@echo 'make test      set everything up and run the tests'
-	@echo 'make check     lint, formatting, types, stub, tests'
+	@echo 'make check     lint, formatting, types, stub, docs, tests'
+	@echo 'make docs      one HTML page of the Python package: .build/docs/obbtree.html'
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
@@ -58,7 +59,7 @@ demo: .venv/installed
 test: .venv/installed
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
 
-check: lint format-check types stub-check test
+check: lint format-check types stub-check docs test
 
 lint: .venv/check-tools
 	$(BIN)/ruff check
@@ -69,7 +70,15 @@ format-check: .venv/check-tools
 
 # For the interpreter at hand: the stubs of a new NumPy are not written for old ones.
 types: .venv/installed .venv/check-tools
-	$(BIN)/mypy --python-version "$$($(BIN)/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')"
+	version="$$($(BIN)/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')"; \
+	$(BIN)/mypy --python-version "$$version"; \
+	$(BIN)/mypy --python-version "$$version" tests/examples
+
+# One page of all that is public.
+docs: .venv/installed .venv/check-tools
+	@mkdir -p .build/docs
+	$(BIN)/python -W error .docs/page.py .build/docs/obbtree.html
+	@echo 'See .build/docs/obbtree.html'
 
 STUB := $(KERNELS)/_core.pyi
 WRITE_STUB := $(BIN)/python -m nanobind.stubgen --quiet -m obbcli.kernels._core -o

@@ -47,6 +47,11 @@ class Accuracy:
 
     Raises:
         MotionError: a value is of the wrong type or out of range; `where` is the field's name.
+
+    Example:
+        >>> coarse = Accuracy(time_tolerance=1e-3, max_depth_a=4)
+        >>> coarse.max_depth_a, coarse.max_depth_b, coarse.max_iterations
+        (4, None, 10000000)
     """
 
     time_tolerance: float | None = None

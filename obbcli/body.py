@@ -31,7 +31,7 @@ class Surface(Protocol):
         """The default pivot, unposed, (3,)."""
 
 
-Shape: TypeAlias = "Surface | str | os.PathLike[str]"
+Shape: TypeAlias = Surface | str | os.PathLike[str]
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -46,6 +46,11 @@ class Body:
     Raises:
         MotionError: an argument is of another kind, or a motion through poses comes with another
             pose.
+
+    Example:
+        >>> body = Body("sample_meshes/nut.obj", Pose(translation=[0, 0, 1]))
+        >>> body.pose.translation.tolist()
+        [0.0, 0.0, 1.0]
     """
 
     shape: Shape

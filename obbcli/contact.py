@@ -68,6 +68,13 @@ class Query:
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, -10, 0]))
+        >>> query = Query(finger, "sample_meshes/workpiece.obj")
+        >>> query.advance(max_iterations=1).status.value, query.advance().time
+        ('unresolved', 0.5)
     """
 
     def __init__(
@@ -287,6 +294,13 @@ def first_contact(
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, -10, 0]))
+        >>> answer = first_contact(finger, "sample_meshes/workpiece.obj")
+        >>> answer.status.value, answer.time_bounds, answer.evidence
+        ('contact', (0.5, 0.5), 'intersecting')
     """
     if duration is None and accuracy is None and not solid:
         here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)

@@ -48,6 +48,10 @@ class Motion:
 
     Raises:
         MotionError: not three finite numbers.
+
+    Example:
+        >>> Motion(linear_velocity=[0, 0, -2], angular_velocity=[0, 0, 3]).is_turning
+        True
     """
 
     linear_velocity: NDArray[np.float64]
@@ -72,6 +76,16 @@ class Motion:
         object.__setattr__(self, "is_at_rest", not (is_turning or velocity.any()))
         object.__setattr__(self, "is_turning", is_turning)
 
+    def __repr__(self) -> str:
+        """Return what makes the same motion again."""
+        values = {
+            "linear_velocity": self.linear_velocity if self.linear_velocity.any() else None,
+            "angular_velocity": self.angular_velocity if self.is_turning else None,
+            "pivot": self.pivot,
+        }
+        told = [f"{name}={x.tolist()}" for name, x in values.items() if x is not None]
+        return f"Motion({', '.join(told)})"
+
     @cached_property
     def velocities(self) -> tuple[list[float], list[float]]:
         """Linear and angular velocity as plain numbers."""
@@ -94,6 +108,11 @@ class Motion:
         Raises:
             MotionError: times or poses are of another number or kind or order, or a piece, which is
                 named, turns by half a turn (to 1e-8) or moves faster than a double can hold.
+
+        Example:
+            >>> path = Motion.through([0, 2], [Pose(), Pose(translation=[1, 0, 0])])
+            >>> path.times.tolist()
+            [0.0, 2.0]
         """
         return PathMotion(times, poses)
 

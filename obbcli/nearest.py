@@ -43,6 +43,10 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> distance("sample_meshes/housing.stl", "sample_meshes/board.vtk").bounds
+        (0.049999999999971644, 0.049999999999999996)
     """
     return measure(a, b, accuracy)[0]
 

@@ -73,6 +73,12 @@ def contacts(
         UnresolvedError: while iterating: a limit of `accuracy` was reached, or bodies turn too fast
             to be followed in doubles. All contacts before its `time` were yielded.
         OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, -10, 0]))
+        >>> [one.time for one in contacts(finger, "sample_meshes/workpiece.obj", limit=2)]
+        [0.5, 0.5]
     """
     accuracy = _EXACT if accuracy is None else accuracy
     most = None if limit is None else whole_limit(limit)

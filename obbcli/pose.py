@@ -39,6 +39,11 @@ class Pose:
 
     Raises:
         MotionError: not finite, of another shape, not orthonormal, or a reflection.
+
+    Example:
+        >>> quarter = Pose(rotation=[0, 0, np.pi / 2], translation=[10, 0, 0])
+        >>> quarter.apply(np.array([[1.0, 0, 0]])).round(12).tolist()
+        [[10.0, 1.0, 0.0]]
     """
 
     rotation: NDArray[np.float64]
@@ -51,6 +56,15 @@ class Pose:
         fields = vars(self)
         fields["rotation"] = _as_rotation(rotation)
         fields["translation"] = vector_or_zero(translation, "translation")
+
+    def __repr__(self) -> str:
+        """Return what makes the same pose again."""
+        parts = []
+        if not np.array_equal(self.rotation, np.eye(3)):
+            parts.append(f"rotation={self.rotation.tolist()}")
+        if self.translation.any():
+            parts.append(f"translation={self.translation.tolist()}")
+        return f"Pose({', '.join(parts)})"
 
     @classmethod
     def carried(cls, rotation: NDArray[np.float64], translation: NDArray[np.float64]) -> Pose:

@@ -60,6 +60,11 @@ def collide(
         MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> answer = collide("sample_meshes/gear.stl", "sample_meshes/pinion.stl")
+        >>> answer.collides, answer.status.value
+        (False, 'separated')
     """
     if duration is None and accuracy is None and not solid:
         # What most ask, in the fewest steps: there are bodies that take less than a microsecond.
@@ -134,6 +139,12 @@ def triangle_pairs(
         TreeFileError: a tree file is damaged.
         ObbError: `threads` is no positive integer.
         OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Pose
+        >>> moved = Body("sample_meshes/pinion.stl", Pose(translation=[-1, 0, 0]))
+        >>> triangle_pairs("sample_meshes/gear.stl", moved, limit=2).tolist()
+        [[92, 460], [93, 460]]
     """
     # Imported where it is needed: a yes or no answers without it.
     from obbcli.cores import thread_count

@@ -67,6 +67,11 @@ class ObbTree(TreeFacts):
             MeshError: the mesh cannot be read or is refused, an option is none of the above, or the
                 build would need more than `max_memory`.
             OSError: the file cannot be read.
+
+        Example:
+            >>> tree = ObbTree.build("sample_meshes/nut.obj")
+            >>> tree.triangle_count, tree.levels[0].box_count
+            (3896, 1)
         """
         mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
         growth = Growth(mesh, fit, split, leaf_size, max_depth, max_memory, on_demand=lazy)

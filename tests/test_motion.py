@@ -215,3 +215,29 @@ def test_shapes_and_paths_become_bodies_at_rest(tmp_path):
 def test_body_refuses_other_kinds_of_arguments(arguments, where):
     with pytest.raises(MotionError, match=f"^{where}: is of type"):
         Body(*arguments)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        Pose(),
+        Pose(translation=(0.1, 0, -3e-300)),
+        Pose(rotation=(0.1, 0.2, 0.3), translation=(1, 2, 3)),
+        Motion(),
+        Motion((0, 0, -2)),
+        Motion(angular_velocity=(0, 0, 3), pivot=(0.1, 0, 0)),
+    ],
+)
+def test_what_is_shown_makes_the_same_again(value):
+    again = eval(repr(value))
+
+    assert repr(again) == repr(value)
+    assert vars(again).keys() <= vars(value).keys() | {"is_identity"}
+    for name, part in vars(again).items():
+        np.testing.assert_array_equal(part, getattr(value, name))
+
+
+def test_what_is_not_given_is_not_shown():
+    assert repr(Pose()) == "Pose()"
+    assert repr(Motion()) == "Motion()"
+    assert repr(Motion((0, 0, 1))) == "Motion(linear_velocity=[0.0, 0.0, 1.0])"

@@ -90,6 +90,10 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
 
     Raises:
         MeshError: it cannot be read, is not what its name says, or holds no usable surface.
+
+    Example:
+        >>> load_mesh("sample_meshes/gear.stl")
+        Mesh(34560 vertices, 11520 triangles, source='gear.stl')
     """
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.

@@ -35,6 +35,10 @@ class Mesh:
     Raises:
         MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
             not finite.
+
+    Example:
+        >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).size
+        1.4142135623730951
     """
 
     vertices: NDArray[np.float64]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-Shape: TypeAlias = "Obb | Triangle"
+Shape: TypeAlias = Obb | Triangle
 
 _AT_REST = np.zeros((1, 3))
 _AT_REST.setflags(write=False)
@@ -71,6 +71,12 @@ def intersects(
     Raises:
         MotionError: velocities or duration of another shape, not finite, or negative.
         ObbError: not shapes, or arrays of different lengths.
+
+    Example:
+        >>> cube = Obb((0, 0, 0), np.eye(3), (1, 1, 1))
+        >>> triangle = Triangle([[1, 0, 0], [3, 0, 0], [2, 1, 0]])
+        >>> intersects(cube, triangle)
+        True
     """
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
     verdicts = np.empty(pairs.pair_count, dtype=np.uint8)
@@ -111,6 +117,13 @@ def first_contact(
         MotionError: velocities or duration of another shape, not finite, or negative; or a
             contact so far away that no double holds its place.
         ObbError: not shapes, or arrays of different lengths.
+
+    Example:
+        >>> cube = Obb((0, 0, 0), np.eye(3), (1, 1, 1))
+        >>> other = Obb((4, 0, 0), np.eye(3), (1, 1, 1))
+        >>> contact = first_contact(cube, other, velocity_a=(4, 0, 0), duration=1)
+        >>> contact.time, contact.last_time
+        (0.5, 1.0)
     """
     pairs = _pairs_of(shape_a, shape_b, velocity_a, velocity_b, duration)
     columns = kernels.primitive_first_contacts(*pairs[:6], thread_count(threads))

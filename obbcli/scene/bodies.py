@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
-from obbcli.body import Body, as_body
+from obbcli.body import Body, Shape, as_body
 from obbcli.errors import SceneError
 from obbcli.scene.keys import known_keys, nearest
 
-if TYPE_CHECKING:
-    from obbcli.body import Shape
-
 # `{"bodies": [a, b]}`, `{"groups": [g]}` (within one group) or `{"groups": [g, h]}` (between two).
 Ignore: TypeAlias = Mapping[str, Sequence[str]]
-Bodies: TypeAlias = "Mapping[str, Body | Shape] | Iterable[SceneBody]"
+Bodies: TypeAlias = Mapping[str, Body | Shape] | Iterable["SceneBody"]
 
 
 @dataclass(frozen=True, init=False, eq=False)

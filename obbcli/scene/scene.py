@@ -47,6 +47,14 @@ class Scene:
     Raises:
         SceneError: no bodies, two of one name, or `ignore` names what is not there.
         MotionError: the duration is negative or not finite, or a body is none.
+
+    Example:
+        >>> for found in Scene.load("sample_meshes/cell.toml").first_contacts():
+        ...     print(found.body_a, found.body_b, found.time)
+        gear pinion 0.05679926621001278
+        bolt nut 0.18555021197607788
+        left finger workpiece 0.5
+        right finger workpiece 0.5
     """
 
     def __init__(

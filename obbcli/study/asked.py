@@ -48,6 +48,13 @@ def tradeoff(
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, -10, 0]))
+        >>> found = tradeoff(finger, "sample_meshes/workpiece.obj", budget=1.0)
+        >>> found.reference.time, found.faulty
+        (0.5, ())
     """
     study = Study(a, b, duration, accuracy, budget=budget)
     study.run(progress)

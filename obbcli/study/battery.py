@@ -209,6 +209,13 @@ def stability(
     Raises:
         MotionError: the method is sampled, or a body moves through poses.
         ObbError: as `first_contact` says.
+
+    Example:
+        >>> from obbcli import Body, Mesh, Motion
+        >>> floor = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> roof = Mesh([[0, 0, 1], [1, 0, 1], [0, 1, 1]], [[0, 1, 2]])
+        >>> stability(floor, Body(roof, motion=Motion([0, 0, -2]))).broken
+        ()
     """
     battery = Battery(a, b, duration, accuracy)
     while not battery.is_finished:

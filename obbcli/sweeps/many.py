@@ -73,6 +73,12 @@ def sweep(
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
+
+    Example:
+        >>> speeds = [Motion([0, -speed, 0]) for speed in (5, 10, 20)]
+        >>> rows = sweep("sample_meshes/finger_left.off", "sample_meshes/workpiece.obj", speeds)
+        >>> rows["status"].tolist(), rows["time"].tolist()
+        (['contact', 'contact', 'contact'], [1.0, 0.5, 0.25])
     """
     accuracy = Accuracy() if accuracy is None else accuracy
     bodies = as_body(a), as_body(b)
