@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
+    from obbcli.blocks import triangle_pair_blocks
     from obbcli.body import Body
     from obbcli.contact import Query, first_contact
     from obbcli.errors import (
@@ -67,6 +68,7 @@ _HOMES = {
     "stability": "study",
     "sweep": "sweeps",
     "tradeoff": "study",
+    "triangle_pair_blocks": "blocks",
     "triangle_pairs": "query",
 }
 
@@ -104,6 +106,7 @@ __all__ = [
     "stability",
     "sweep",
     "tradeoff",
+    "triangle_pair_blocks",
     "triangle_pairs",
 ]
 

@@ -105,7 +105,7 @@ def _run(query: kernels.DistanceQuery, accuracy: Accuracy) -> bool:
     left = accuracy.max_iterations
     stop = None if accuracy.timeout is None else time.perf_counter() + accuracy.timeout
     while not query.advance(min(POPS_A_SLICE, left)):
-        left -= POPS_A_SLICE
+        left = accuracy.max_iterations - query.pops
         if left <= 0 or (stop is not None and time.perf_counter() >= stop):
             return False
     return True

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.body import as_body
+from obbcli.errors import UnresolvedError
 from obbcli.question import (
     NO_LIMIT,
     duration_of,
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from obbcli.body import Body, Shape
     from obbcli.results import FirstContact
 
+# What a pair takes at the peak: two rows, and what lists that grow set aside.
+_BYTES_A_PAIR = 32
 _EXACT = Accuracy()
 _EXACT_LIMITS = limits_of(_EXACT)
 
@@ -118,11 +121,13 @@ def triangle_pairs(
     limit: int | None = None,
     *,
     threads: int | None = None,
+    max_memory: int | None = None,
 ) -> NDArray[np.int64]:
     """Return every pair of triangles that intersect at t = 0, int64 (N, 2), sorted.
 
     Exact: the same pairs as testing all triangles against all others in rational arithmetic.
-    Rows of the meshes' files. Motions play no part.
+    Rows of the meshes' files. Motions play no part. There may be as many pairs as the product of
+    the numbers of triangles: `triangle_pair_blocks` yields them some at a time.
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
@@ -131,10 +136,12 @@ def triangle_pairs(
             One thread looks for them.
         threads: at most so many; None: as many as this process may use cores. They change nothing
             but the time it takes.
+        max_memory: bytes that the pairs may need, about. None: no limit.
 
     Raises:
-        MotionError: `limit` is no whole number of at least 1, or posed coordinates leave the range
-            of double.
+        UnresolvedError: the pairs need more than `max_memory`.
+        MotionError: `limit` or `max_memory` is no whole number of at least 1, or posed coordinates
+            leave the range of double.
         MeshError: a mesh cannot be read or is refused.
         TreeFileError: a tree file is damaged.
         ObbError: `threads` is no positive integer.
@@ -154,8 +161,17 @@ def triangle_pairs(
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
     here, there = (placed_of(*pair) for pair in zip(bodies, trees, strict=True))
+    room = NO_LIMIT
+    if max_memory is not None:
+        room = whole_limit(max_memory, "max_memory") // _BYTES_A_PAIR
     try:
-        found, _counts = kernels.triangle_pairs(here, there, most, workers)
+        found, _counts = kernels.triangle_pairs(here, there, most, workers, room)
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
+    if found is None:
+        raise UnresolvedError(
+            "max_memory",
+            f"more than {room} pairs of triangles intersect, and {max_memory} bytes are allowed",
+            "allow more, cut the list with limit, or take it in blocks",
+        )
     return found

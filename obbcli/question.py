@@ -29,8 +29,10 @@ _NO_DEPTH_LIMIT = 2**32 - 1
 _TIME_TOLERANCE = 1e-9
 NO_LIMIT = 2**64 - 1
 _ORIGIN = (0.0, 0.0, 0.0)
-# Queue pops between two looks at clock and signals: a few milliseconds.
+# Queue pops between two looks at clock and signals: a few milliseconds. The kernels end a slice
+# earlier where pops take long, as relays of questions do.
 POPS_A_SLICE = 16_384
+SECONDS_A_SLICE = 0.01
 
 Trees = tuple[ObbTree, ObbTree]
 
@@ -249,7 +251,7 @@ def _screw_over(body: Body, tree: ObbTree) -> kernels.Screw:
     return kernels.Screw(*motion.velocities, pivot)
 
 
-def whole_limit(limit: int) -> int:
+def whole_limit(limit: int, name: str = "limit") -> int:
     """Return a limit as an int that the kernels can hold.
 
     Raises:
@@ -258,9 +260,9 @@ def whole_limit(limit: int) -> int:
     try:
         number = operator.index(limit)
     except TypeError as fault:
-        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1") from fault
+        raise MotionError(name, f"is {limit!r}", "use a whole number of at least 1") from fault
     if isinstance(limit, bool) or number < 1:
-        raise MotionError("limit", f"is {limit!r}", "use a whole number of at least 1")
+        raise MotionError(name, f"is {limit!r}", "use a whole number of at least 1")
     return min(number, NO_LIMIT)
 
 

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.question import SECONDS_A_SLICE
 from obbcli.results import FirstContact, Status
 
 if TYPE_CHECKING:
@@ -115,9 +116,9 @@ class Relay(ABC):
     def step(self, pops: int, until: float) -> bool:
         """Take at most so many pairs from the queue, and none of later than `until`, s.
 
-        True when the answer is complete.
+        Fewer where they take long. True when the answer is complete.
         """
-        found = self._query.advance(pops, until=self._until(until))
+        found = self._query.advance(pops, SECONDS_A_SLICE, until=self._until(until))
         stats = found.stats
         self._present = (
             stats.box_tests,

@@ -52,6 +52,7 @@ LAYERS = (
         "nearest",
         "search",
         "pairs",
+        "blocks",
         "query",
     ),
     ("scene", "sweeps", "study", "view"),

@@ -14,7 +14,7 @@ from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options import Command, common_options, gathered, option
 from obbcli.cli.output import emit, remark
 from obbcli.cli.progress import bar
-from obbcli.cli.types import PathName, Whole
+from obbcli.cli.types import PathName, Whole, byte_count
 from obbcli.errors import MeshError, ObbError
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 SUFFIX = ".obbt"
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center", "compact")
-_UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
 class BuildOptions(NamedTuple):
@@ -37,18 +36,6 @@ class BuildOptions(NamedTuple):
     max_depth: int | None
     max_memory: int | None
     force: bool
-
-
-def _bytes(context: click.Context, param: click.Parameter, text: str | None) -> int | None:
-    """Return a number of bytes from digits and an optional K, M, G or T (powers of 1024)."""
-    if text is None:
-        return None
-    unit = text[-1:].upper() if text[-1:].isalpha() else ""
-    digits = text[: len(text) - len(unit)]
-    if unit not in _UNITS or not (digits.isascii() and digits.isdigit()):
-        fault = f"{text!r} is no number of bytes, such as 500M or 2G"
-        raise click.BadParameter(fault, ctx=context, param=param)
-    return int(digits) * _UNITS[unit]
 
 
 _TREE = "Tree"
@@ -92,7 +79,7 @@ build_options = gathered(
         option(
             _TREE,
             "--max-memory",
-            callback=_bytes,
+            callback=byte_count,
             metavar="BYTES",
             help="Refuse a mesh whose build needs more, such as 500M or 2G [default: no limit].",
         ),

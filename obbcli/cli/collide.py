@@ -16,10 +16,13 @@ from obbcli.cli.asking import (
 )
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.options import Command, option
-from obbcli.cli.output import emit, remark
-from obbcli.cli.types import Whole
+from obbcli.cli.output import emit, remark, write_pieces
+from obbcli.cli.types import Whole, byte_count
+from obbcli.errors import UnresolvedError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy import int64
     from numpy.typing import NDArray
 
@@ -30,6 +33,11 @@ if TYPE_CHECKING:
     from obbcli.cli.question import AccuracyOptions, Question
     from obbcli.report.record import Record
     from obbcli.results import Collision
+
+
+# What a pair takes in a table or a document, and as an array on the way there.
+_BYTES_A_PAIR = 512
+_LINES = 10_000  # that are written at once
 
 
 @click.command(
@@ -52,6 +60,13 @@ Examples:
     metavar="N",
     help="List at most N pairs (with --all-pairs).",
 )
+@option(
+    QUESTION,
+    "--max-memory",
+    callback=byte_count,
+    metavar="BYTES",
+    help="Refuse a list of pairs that needs more, such as 500M or 2G [default: no limit].",
+)
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
 def command(asked: Asked, **flags: Any) -> int:
@@ -65,16 +80,26 @@ def command(asked: Asked, **flags: Any) -> int:
     files = asked.read()
     with naming_options(question):
         record = _ask(asked, question, files, flags)
-    _show(record, asked.common)
+    if flags["all_pairs"] and _streams(asked.common, flags):
+        write_pieces(_lines(question.bodies(files)))
+    else:
+        _show(record, asked.common)
     return exit_code(record["result"], asked=asked.exit_code)
+
+
+def _streams(common: CommonOptions, flags: dict[str, Any]) -> bool:
+    """Return whether pairs are written as they are found, and never held all at once."""
+    return common.quiet and not common.json and common.output is None and flags["limit"] is None
 
 
 def _refuse_contradictions(
     question: Question, accuracy: AccuracyOptions, flags: dict[str, Any]
 ) -> None:
     """Refuse flags of which one would be ignored."""
-    if flags["limit"] is not None and not flags["all_pairs"]:
-        raise UsageError("--limit", "cuts the list of --all-pairs", "add --all-pairs")
+    for name in ("limit", "max_memory"):
+        if flags[name] is not None and not flags["all_pairs"]:
+            option_name = "--" + name.replace("_", "-")
+            raise UsageError(option_name, "is about the list of --all-pairs", "add --all-pairs")
     if not flags["all_pairs"]:
         return
     if question.moves:
@@ -101,11 +126,10 @@ def _ask(
     bodies = question.bodies(files)
     shows_progress = asked.common.shows_progress
     answer = _answer(question, bodies, solid=flags["solid"], progress=shows_progress)
-    record = collide_record(
-        asked.setting(files, bodies, question, flags["solid"]),
-        answer,
-        _pairs(bodies, flags["limit"]) if flags["all_pairs"] else None,
-    )
+    pairs = None
+    if flags["all_pairs"] and not _streams(asked.common, flags):
+        pairs = _pairs(bodies, flags["limit"], flags["max_memory"])
+    record = collide_record(asked.setting(files, bodies, question, flags["solid"]), answer, pairs)
     return with_load_time(record, files)
 
 
@@ -123,13 +147,37 @@ def _answer(
     return collision_of(run(query, question.accuracy, progress=progress))
 
 
-def _pairs(bodies: tuple[Body, Body], limit: int | None) -> tuple[NDArray[int64], bool]:
-    """Return the intersecting pairs, at most `limit`, and whether these are all."""
+def _pairs(
+    bodies: tuple[Body, Body], limit: int | None, max_memory: int | None
+) -> tuple[NDArray[int64], bool]:
+    """Return the intersecting pairs, at most `limit`, and whether these are all.
+
+    Raises:
+        UnresolvedError: their list needs more memory than allowed.
+    """
     from obbcli.query import triangle_pairs
 
+    room = None if max_memory is None else max_memory // _BYTES_A_PAIR
     # One more than asked for tells whether the list was cut.
-    pairs = triangle_pairs(*bodies, limit=None if limit is None else limit + 1)
+    most = min((n + 1 for n in (limit, room) if n is not None), default=None)
+    pairs = triangle_pairs(*bodies, limit=most)
+    if room is not None and len(pairs) > room:
+        raise UnresolvedError(
+            "--max-memory",
+            f"the list of more than {room} pairs would need more than {max_memory} bytes",
+            "allow more, cut the list with --limit, or write it with --quiet, which holds none",
+        )
     return pairs[:limit], limit is None or len(pairs) <= limit
+
+
+def _lines(bodies: tuple[Body, Body]) -> Iterator[str]:
+    """Yield every intersecting pair, two numbers a line, thousands of lines at a time."""
+    from obbcli.blocks import triangle_pair_blocks
+
+    for block in triangle_pair_blocks(*bodies):
+        for start in range(0, len(block), _LINES):
+            piece = block[start : start + _LINES].tolist()
+            yield "".join(f"{i} {j}\n" for i, j in piece)
 
 
 def _show(record: Record, common: CommonOptions) -> None:

@@ -84,6 +84,22 @@ def write_stdout(text: str) -> None:
         _stdout().write(text)
 
 
+def write_pieces(pieces: Iterable[str]) -> None:
+    """Write text to standard output as it comes, until there is no more or nobody reads it.
+
+    Raises:
+        OutputError: it is closed, or its disk is full.
+    """
+    for piece in pieces:
+        is_read = False
+        with writing_stdout():
+            _stdout().write(piece)
+            _stdout().flush()
+            is_read = True
+        if not is_read:
+            return
+
+
 def write_file(path: Path, text: str) -> None:
     """Write text to a file, whole or not at all.
 

@@ -10,6 +10,20 @@ import click
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+_UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
+
+
+def byte_count(context: click.Context, param: click.Parameter, text: str | None) -> int | None:
+    """Return a number of bytes from digits and an optional K, M, G or T (powers of 1024)."""
+    if text is None:
+        return None
+    unit = text[-1:].upper() if text[-1:].isalpha() else ""
+    digits = text[: len(text) - len(unit)]
+    if unit not in _UNITS or not (digits.isascii() and digits.isdigit()):
+        fault = f"{text!r} is no number of bytes, such as 500M or 2G"
+        raise click.BadParameter(fault, ctx=context, param=param)
+    return int(digits) * _UNITS[unit]
+
 
 class Finite(click.types.FloatParamType):
     """A finite number, at least `minimum` where one is given."""

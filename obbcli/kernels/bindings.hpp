@@ -94,8 +94,8 @@ inline std::uint64_t brief_pops(const Tree& a, const Tree& b) {
     return a.view.on_demand == nullptr && b.view.on_demand == nullptr ? 32 : 0;
 }
 
-// Takes at most so many pairs from a query's stack or queue, and lets other threads run after the
-// first few; true when its answer is complete.
+// Does a slice of at most so many pops of a query, and lets other threads run after the first few;
+// true when its answer is complete.
 template <typename Query>
 inline bool advance(Query& query, std::uint64_t brief, std::uint64_t max_pops) {
     brief = std::min(brief, max_pops);
@@ -123,14 +123,14 @@ template <typename Query>
 inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, const Stopwatch& watch,
                 double seconds) {
     for (;;) {
-        const std::uint64_t slice = std::min(kPopsASlice, max_pops);
-        if (advance(query, brief, slice)) {
+        const std::uint64_t before = query.counts().pops;
+        if (advance(query, brief, std::min(kPopsASlice, max_pops))) {
             return true;
         }
         if (PyErr_CheckSignals() != 0) {
             throw nb::python_error();
         }
-        max_pops -= slice;
+        max_pops -= query.counts().pops - before;
         if (max_pops == 0 || watch.seconds() >= seconds) {
             return false;
         }

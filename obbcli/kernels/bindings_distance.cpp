@@ -25,6 +25,7 @@ void bind_distance(nb::module_& m) {
             "max_depth_b"_a, "tolerance"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
         .def("advance", &obb::DistanceQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
+        .def_prop_ro("pops", [](const obb::DistanceQuery& q) { return q.counts().pops; })
         // low, high, point_a, point_b, triangle_a, triangle_b, counts: box tests, triangle tests,
         // exact ones, pops
         .def("answer", [](const obb::DistanceQuery& q) {

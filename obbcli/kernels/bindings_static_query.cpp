@@ -8,6 +8,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 
+#include <atomic>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -17,10 +18,10 @@ using namespace nb::literals;
 
 namespace {
 
-Owned<std::int64_t, -1, 2> pairs_of(const obb::StaticQuery& query) {
-    const auto found = query.pairs();
-    return owned<Owned<std::int64_t, -1, 2>>(
-        std::vector<obb::TrianglePair>(found.begin(), found.end()), {found.size(), 2});
+Owned<std::int64_t, -1, 2> take_pairs(obb::StaticQuery& query) {
+    std::vector<obb::TrianglePair> pairs = query.take_pairs();
+    const std::size_t count = pairs.size();
+    return owned<Owned<std::int64_t, -1, 2>>(std::move(pairs), {count, 2});
 }
 
 void init_pose(
@@ -100,21 +101,45 @@ Collision collide(const Placed& a, const Placed& b, const Limits& limits) {
              b.tree->node_count(), a.tree->possible_node_count, b.tree->possible_node_count}};
 }
 
+// More pairs than there is to be room for.
+struct TooManyPairs {};
+
 // Parts are several a thread, for they differ in size.
-void advance_in_parts(obb::StaticQuery& query, unsigned threads) {
+void advance_in_parts(obb::StaticQuery& query, unsigned threads, std::uint64_t most) {
     constexpr std::size_t kPartsAThread = 16;
     const nb::gil_scoped_release release;
     std::vector<obb::StaticQuery> parts = query.divide(kPartsAThread * threads);
+    std::atomic<std::uint64_t> count = query.pairs().size();
     const SignalWatch watch;
-    obb::do_parts(
-        parts.size(), threads, [&](std::size_t k) { return parts[k].advance(kPopsASlice); }, watch);
+    const auto advance_part = [&](std::size_t k) {
+        const std::size_t before = parts[k].pairs().size();
+        const bool is_done = parts[k].advance(kPopsASlice);
+        if ((count += parts[k].pairs().size() - before) > most) {
+            throw TooManyPairs();
+        }
+        return is_done;
+    };
+    obb::do_parts(parts.size(), threads, advance_part, watch);
     query.join(parts);
 }
 
-// The pairs and what they cost. Which ones a limit leaves depends on the order in which they are
-// found: there, one thread works.
-std::pair<Owned<std::int64_t, -1, 2>, Counts>
-triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned threads) {
+// Throws TooManyPairs; more than a slice finds does not come on top.
+void advance_alone(obb::StaticQuery& query, std::uint64_t brief, std::uint64_t most) {
+    while (!advance(query, brief, kPopsASlice) && query.pairs().size() <= most) {
+        if (PyErr_CheckSignals() != 0) {
+            throw nb::python_error();
+        }
+    }
+    if (query.pairs().size() > most) {
+        throw TooManyPairs();
+    }
+}
+
+// The pairs, but none if there are more than `most`, and what they cost. Which ones a limit leaves
+// depends on the order in which they are found: there, one thread works.
+std::pair<std::optional<Owned<std::int64_t, -1, 2>>, Counts>
+triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned threads,
+               std::uint64_t most) {
     // Below so many pops, threads cost more than they save: at 10,000, where one takes 1.7 ms, a
     // second on a busy machine took 0.1 ms more at best, and often a slice of the scheduler's.
     constexpr std::uint64_t kPopsAlone = kPopsASlice;
@@ -124,12 +149,16 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
     options.limit = limit;
     obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options);
     const std::uint64_t brief = brief_pops(*a.tree, *b.tree);
-    if (threads < 2 || limit != kNoLimit) {
-        run(query, brief, kNoLimit, {}, std::numeric_limits<double>::infinity());
-    } else if (!advance(query, brief, kPopsAlone)) {
-        advance_in_parts(query, threads);
+    try {
+        if (threads < 2 || limit != kNoLimit || advance(query, brief, kPopsAlone)) {
+            advance_alone(query, brief, most);
+        } else {
+            advance_in_parts(query, threads, most);
+        }
+    } catch (const TooManyPairs&) {
+        return {std::nullopt, counts_of(query)};
     }
-    return {pairs_of(query), counts_of(query)};
+    return {take_pairs(query), counts_of(query)};
 }
 
 } // namespace

@@ -14,6 +14,8 @@ namespace {
 constexpr double kAllButMeeting = 0x1p-20;
 // A pair is opened for as long as its boxes take to move by their own size, times this.
 constexpr double kWindow = 2;
+// Triangles of a leaf, which may hold a whole mesh, that are looked at in one pop.
+constexpr std::uint32_t kTrianglesAPop = 64;
 
 } // namespace
 
@@ -103,8 +105,9 @@ void ContactQuery::open(Entry entry) {
     const Node& node = tree.node(ref);
     const bool is_leaf = TreeView::is_leaf(node);
     tree.prepare(ref);
-    // Of a leaf the triangles are the children, two at a time.
-    const std::uint32_t begin = is_leaf ? ref.begin : 0, end = is_leaf ? ref.end : 2;
+    // Of a leaf the triangles are the children, two at a time, the rest after what these lead to.
+    const std::uint32_t begin = is_leaf ? ref.begin + entry.next : 0;
+    const std::uint32_t end = is_leaf ? begin + std::min(kTrianglesAPop, ref.end - begin) : 2;
     const MovingFrame now = frame(a_.box_error() + b_.box_error(), entry.time);
     for (std::uint32_t i = begin; i < end; i += 2) {
         const std::uint32_t last = std::min(i + 1, end - 1);
@@ -113,7 +116,7 @@ void ContactQuery::open(Entry entry) {
                     : tree.children(ref, node);
         const std::array<NodeRef, 2> others{other, other};
         place(kOpensA ? children : others, kOpensA ? others : children);
-        if (i == begin && !is_translation_) {
+        if (i == begin && entry.next == 0 && !is_translation_) {
             close_after(entry, window(entry));
         }
         const std::array<double, 2> steps =
@@ -125,6 +128,11 @@ void ContactQuery::open(Entry entry) {
                              : Entry{*time, entry.end, entry.a, children[k], entry.window});
             }
         }
+    }
+    if (is_leaf && end < ref.end) {
+        Entry rest = entry;
+        rest.next = end - ref.begin;
+        push(rest);
     }
 }
 
@@ -175,7 +183,7 @@ void ContactQuery::visit(const Entry& entry) {
         } else {
             meet_triangles(entry);
         }
-    } else if (entry.reopened > 0 && is_over(entry)) {
+    } else if (entry.reopened > 0 && entry.next == 0 && is_over(entry)) {
         return;
     } else if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
         open<true>(entry);

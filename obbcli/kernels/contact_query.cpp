@@ -1,6 +1,7 @@
 #include "contact_query.hpp"
 
 #include "scale.hpp"
+#include "slice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -138,14 +139,16 @@ std::optional<double> ContactQuery::later(const Entry& entry, double step) {
     return std::max(entry.time, below);
 }
 
-// Of equal times the deepest comes first, so that triangles are reached early.
+// Of equal times the deepest comes first, so that triangles are reached early; of a leaf, what it
+// still has after what it had.
 void ContactQuery::push(const Entry& entry) {
-    queue_.push(entry, entry.time, entry.a.depth + entry.b.depth);
+    queue_.push(entry, entry.time, entry.next > 0 ? 0 : entry.a.depth + entry.b.depth);
 }
 
 bool ContactQuery::advance(std::uint64_t max_pops, double until) {
     const double last = std::ldexp(until, -time_exponent_);
-    for (; max_pops > 0; --max_pops) {
+    SliceClock clock;
+    for (; max_pops > 0 && !clock.is_over(); --max_pops) {
         if (has_ended() || is_ready() || lower_bound_ > last) {
             break;
         }

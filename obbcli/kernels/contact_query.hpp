@@ -72,9 +72,9 @@ class ContactQuery {
     ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& screw_a, const TreeView& b,
                  const Pose& pose_b, const Screw& screw_b, const ContactQueryOptions& options);
 
-    // Takes at most so many pairs from the queue, and none once the lower bound exceeds `until`, s;
-    // true when the answer is complete. With `each_pair` it also ends, and returns false, when a
-    // contact is ready to be taken.
+    // Takes at most so many pairs from the queue, fewer where they take long (see SliceClock), and
+    // none once the lower bound exceeds `until`, s; true when the answer is complete. With
+    // `each_pair` it also ends, and returns false, when a contact is ready to be taken.
     bool advance(std::uint64_t max_pops, double until = std::numeric_limits<double>::infinity());
 
     // With `each_pair`: the next contact in order of `low`, once no other can come before it.
@@ -98,6 +98,7 @@ class ContactQuery {
         std::uint32_t window = 0;
         std::uint32_t opened = 0;   // the window that it was opened for before
         std::uint32_t reopened = 0; // how often since the two were last seen to have parted
+        std::uint32_t next = 0;     // of a leaf that is opened, the first triangle not yet pushed
     };
 
     void set_units();

@@ -171,7 +171,8 @@ void SweepRow::tell(ContactQuery& query, const Contact& found) {
 // The moving question knows where some of the boxes meet; what it costs to ask is not counted.
 void SweepRow::tell_boxes_at_start() {
     ContactQuery query = moving_query();
-    query.advance(kPopsASlice);
+    while (query.counts().pops < kPopsASlice && !query.advance(kPopsASlice - query.counts().pops)) {
+    }
     const std::optional<Contact>& found = query.contact();
     if (found && found->evidence == Evidence::kBoxes && !(found->low > 0)) {
         tell(query, *found);

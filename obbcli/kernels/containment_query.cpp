@@ -3,6 +3,7 @@
 #include "extremes.hpp"
 #include "orientation.hpp"
 #include "scale.hpp"
+#include "slice.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +47,8 @@ void ContainmentQuery::begin_point() {
 }
 
 bool ContainmentQuery::advance(std::uint64_t max_pops) {
-    for (; !stack_.empty() && max_pops > 0; --max_pops) {
+    SliceClock clock;
+    for (; !stack_.empty() && max_pops > 0 && !clock.is_over(); --max_pops) {
         ++counts_.pops;
         visit();
         if (!stack_.empty()) {

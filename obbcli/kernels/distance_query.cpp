@@ -2,6 +2,7 @@
 
 #include "box_distance.hpp"
 #include "query_frame.hpp"
+#include "slice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,15 @@ DistanceQuery::Pair DistanceQuery::pop() {
 }
 
 bool DistanceQuery::advance(std::uint64_t max_pops) {
-    for (;; --max_pops) {
+    SliceClock clock;
+    for (;;) {
+        if (wait_) {
+            if (!wait_->preparations[0].advance(clock) || !wait_->preparations[1].advance(clock)) {
+                return false;
+            }
+            end_wait();
+            continue;
+        }
         while (!stack_.empty() && is_settled(stack_.back().key)) {
             settle(stack_.back().key);
             stack_.pop_back();
@@ -70,9 +79,10 @@ bool DistanceQuery::advance(std::uint64_t max_pops) {
         if (stack_.empty() && (queue_.is_empty() || is_settled(queue_.next_time()))) {
             return true;
         }
-        if (max_pops == 0) {
+        if (max_pops == 0 || clock.is_over()) {
             return false;
         }
+        --max_pops;
         ++counts_.pops;
         visit(pop());
     }
@@ -123,9 +133,14 @@ void DistanceQuery::visit(const Pair& pair) {
         refine(pair);
         return;
     }
-    if (may_tie(pair) && is_proven_tie(pair)) {
-        return;
+    if (may_tie(pair)) {
+        look_for_tie(pair);
+    } else {
+        part(pair);
     }
+}
+
+void DistanceQuery::part(const Pair& pair) {
     const Next how = next(pair);
     if (how == Next::kMeasure) {
         measure_all(pair);
@@ -162,12 +177,22 @@ void DistanceQuery::open(const Pair& pair, bool opens_a, bool opens_b) {
     }
 }
 
+// Some triangles at a time, the rest after what they lead to: leaves may hold whole meshes, and
+// neither the queue nor the time between two looks at the clock should.
 void DistanceQuery::open_leaf(const Pair& pair, bool opens_a) {
+    constexpr std::uint32_t kTrianglesAPop = 64;
     const PosedTree& body = opens_a ? a_ : b_;
     const NodeRef& ref = opens_a ? pair.a : pair.b;
     body.tree().prepare(ref);
     const Side other = reach(opens_a ? b_ : a_, opens_a ? pair.b : pair.a);
-    for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
+    const std::uint32_t begin = ref.begin + pair.next;
+    const std::uint32_t end = begin + std::min(kTrianglesAPop, ref.end - begin);
+    if (end < ref.end) {
+        Pair rest = pair;
+        rest.next = end - ref.begin;
+        add(rest);
+    }
+    for (std::uint32_t i = begin; i < end; ++i) {
         const NodeRef child = TreeView::triangle_ref(ref, i);
         const double key = std::max(pair.key, bound(reach(body, child), other));
         add(opens_a ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
@@ -246,7 +271,8 @@ void DistanceQuery::add(const Pair& pair) {
                pair.a.triangle_count() + pair.b.triangle_count() <= kSmall) {
         stack_.push_back(pair);
     } else {
-        queue_.push(pair, pair.key, pair.a.depth + pair.b.depth);
+        // Of a leaf, what it still has comes after what it had.
+        queue_.push(pair, pair.key, pair.next > 0 ? 0 : pair.a.depth + pair.b.depth);
     }
 }
 

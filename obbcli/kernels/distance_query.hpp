@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace obb {
@@ -53,8 +54,9 @@ class DistanceQuery {
     DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
                   const DistanceQueryOptions& options);
 
-    // Takes at most so many pairs off the queue; true when the bounds are as close as asked, or as
-    // rounding, boxes for triangles and the depth limits allow.
+    // Takes at most so many pairs off the queue, fewer where they take long (see SliceClock); true
+    // when the bounds are as close as asked, or as rounding, boxes for triangles and the depth
+    // limits allow.
     bool advance(std::uint64_t max_pops);
 
     // Throws std::domain_error where the distance exceeds the largest double.
@@ -68,7 +70,8 @@ class DistanceQuery {
     struct Pair {
         double key; // proven: nothing in `a` is nearer to anything in `b`
         NodeRef a, b;
-        NearFeatures features; // where two triangles were measured: only more digits tell more
+        NearFeatures features;  // where two triangles were measured: only more digits tell more
+        std::uint32_t next = 0; // of a leaf that is opened, the first triangle not yet added
     };
     // Where the least distance was found.
     struct Incumbent {
@@ -98,6 +101,7 @@ class DistanceQuery {
     [[nodiscard]] bool is_diving() const { return high_ > std::numeric_limits<double>::max(); }
     [[nodiscard]] Pair pop();
     void visit(const Pair& pair);
+    void part(const Pair& pair);
     void open(const Pair& pair, bool opens_a, bool opens_b);
     void open_leaf(const Pair& pair, bool opens_a);
     [[nodiscard]] Part part_of(const PosedTree& body, const NodeRef& ref, bool opens) const;
@@ -125,7 +129,11 @@ class DistanceQuery {
     // Faces along each other, of which boxes cannot tell whether any two are nearer than the rest:
     // all vertices of both nodes are looked at, along the direction that the least distance has.
     [[nodiscard]] bool may_tie(const Pair& pair) const;
-    [[nodiscard]] bool is_proven_tie(const Pair& pair);
+    [[nodiscard]] bool may_all_tie();
+    [[nodiscard]] bool are_sides_apart(const Pair& pair);
+    void look_for_tie(const Pair& pair);
+    void wait_for(const Pair& candidate, const Pair& pair);
+    void end_wait();
     void refine_incumbent();
     [[nodiscard]] bool are_boxes_apart(const Pair& pair) const;
     [[nodiscard]] double all_apart(const Pair& pair) const;
@@ -154,6 +162,13 @@ class DistanceQuery {
     Incumbent incumbent_{};
     // How many triangles may be looked at for a tie; before there are many, and from then on.
     std::array<std::uint32_t, 2> tie_limits_{kAnyNumber, kAnyNumber};
+    // Nodes that may tie as a whole, all of whose triangles are being made ready; and the pair that
+    // was popped, which they are or hold.
+    struct Wait {
+        Pair candidate, pair;
+        std::array<Preparation, 2> preparations;
+    };
+    std::optional<Wait> wait_;
     DistanceQueryCounts counts_;
 };
 

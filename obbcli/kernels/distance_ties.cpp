@@ -81,30 +81,66 @@ bool DistanceQuery::may_tie(const Pair& pair) const {
                tie_limits_[has_many_ties() ? 1 : 0];
 }
 
-// The bodies as a whole come first: where they lie along each other nothing is left to do.
-bool DistanceQuery::is_proven_tie(const Pair& pair) {
+// The bodies as a whole come first, once: where they lie along each other nothing is left to do.
+bool DistanceQuery::may_all_tie() {
     std::uint32_t& limit = tie_limits_[has_many_ties() ? 1 : 0];
-    if (limit == kAnyNumber) {
-        limit = kAnyNumber - 1;
-        Pair all{0.0, a_.tree().root(), b_.tree().root(), {}};
-        all.key = bound(reach(a_, all.a), reach(b_, all.b));
-        if (may_tie(all) && is_proven_tie(all)) {
-            queue_.clear();
-            stack_.clear();
-            return true;
-        }
-    }
-    refine_incumbent();
-    if (!are_boxes_apart(pair)) {
+    if (limit < kAnyNumber) {
         return false;
     }
-    const double low = all_apart(pair);
+    limit = kAnyNumber - 1;
+    return true;
+}
+
+bool DistanceQuery::are_sides_apart(const Pair& pair) {
+    refine_incumbent();
+    return are_boxes_apart(pair);
+}
+
+void DistanceQuery::look_for_tie(const Pair& pair) {
+    if (may_all_tie()) {
+        Pair all{0.0, a_.tree().root(), b_.tree().root(), {}};
+        all.key = bound(reach(a_, all.a), reach(b_, all.b));
+        if (may_tie(all) && are_sides_apart(all)) {
+            wait_for(all, pair);
+            return;
+        }
+    }
+    if (are_sides_apart(pair)) {
+        wait_for(pair, pair);
+    } else {
+        part(pair);
+    }
+}
+
+// To make all nodes of a tree takes longer than a slice may.
+void DistanceQuery::wait_for(const Pair& candidate, const Pair& pair) {
+    wait_ = Wait{candidate, pair, {}};
+    wait_->preparations[0].begin(a_.tree(), candidate.a);
+    wait_->preparations[1].begin(b_.tree(), candidate.b);
+}
+
+void DistanceQuery::end_wait() {
+    const Pair candidate = wait_->candidate, pair = wait_->pair;
+    wait_.reset();
+    const double low = all_apart(candidate);
+    const bool are_all =
+        candidate.a.slot == a_.tree().root().slot && candidate.b.slot == b_.tree().root().slot;
     if (is_settled(low)) {
         settle(low);
-        return true;
+        if (are_all) {
+            queue_.clear();
+            stack_.clear();
+        }
+        return;
     }
-    limit = (pair.a.triangle_count() + pair.b.triangle_count()) / kFewer;
-    return false;
+    const std::uint32_t count = candidate.a.triangle_count() + candidate.b.triangle_count();
+    tie_limits_[has_many_ties() ? 1 : 0] = count / kFewer;
+    const bool is_pair = candidate.a.slot == pair.a.slot && candidate.b.slot == pair.b.slot;
+    if (!is_pair && are_sides_apart(pair)) {
+        wait_for(pair, pair);
+    } else {
+        part(pair);
+    }
 }
 
 void DistanceQuery::refine_incumbent() {
@@ -148,7 +184,6 @@ double DistanceQuery::all_apart(const Pair& pair) const {
         const PosedTree& body = is_a ? a_ : b_;
         const NodeRef& ref = is_a ? pair.a : pair.b;
         Summit& summit = summits[is_a ? 0 : 1];
-        body.tree().prepare_triangles(ref, ref.triangle_count());
         SeenLately seen;
         for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
             const Triangle t = in_unit(body.triangle(TreeView::triangle_ref(ref, i)));

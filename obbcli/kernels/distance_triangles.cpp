@@ -161,6 +161,9 @@ DistanceBounds DistanceQuery::bounds() const {
     for (const Pair& pair : stack_) {
         low = std::min(low, pair.key);
     }
+    if (wait_) {
+        low = std::min(low, wait_->pair.key);
+    }
     DistanceBounds result = best_;
     result.low = scaled_down(low, exponent_);
     result.high = scaled_up(high_, exponent_);

@@ -1,6 +1,7 @@
 #include "static_query.hpp"
 
 #include "query_frame.hpp"
+#include "slice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,8 @@ double StaticQuery::size_of(const PosedTree& body, const NodeRef& ref) {
 }
 
 bool StaticQuery::advance(std::uint64_t max_pops) {
-    for (; !stack_.empty() && max_pops > 0; --max_pops) {
+    SliceClock clock;
+    for (; !stack_.empty() && max_pops > 0 && !clock.is_over(); --max_pops) {
         ++counts_.pops;
         visit();
     }
@@ -248,9 +250,16 @@ std::vector<StaticQuery> StaticQuery::divide(std::size_t count) {
     return parts;
 }
 
-void StaticQuery::join(std::span<const StaticQuery> parts) {
+void StaticQuery::join(std::span<StaticQuery> parts) {
+    std::size_t count = pairs_.size();
     for (const StaticQuery& part : parts) {
-        pairs_.insert(pairs_.end(), part.pairs_.begin(), part.pairs_.end());
+        count += part.pairs_.size();
+    }
+    pairs_.reserve(count);
+    for (StaticQuery& part : parts) {
+        // No pair is held twice for longer than that takes.
+        const std::vector<TrianglePair> found = part.take_pairs();
+        pairs_.insert(pairs_.end(), found.begin(), found.end());
         counts_.box_tests += part.counts_.box_tests;
         counts_.triangle_tests += part.counts_.triangle_tests;
         counts_.exact_triangle_tests += part.counts_.exact_triangle_tests;

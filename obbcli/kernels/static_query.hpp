@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace obb {
@@ -46,7 +47,8 @@ class StaticQuery {
     StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
                 const StaticQueryOptions& options);
 
-    // Takes at most so many pairs off the stack; true when the answer is complete.
+    // Takes at most so many pairs off the stack, fewer where they take long (see SliceClock); true
+    // when the answer is complete.
     bool advance(std::uint64_t max_pops);
 
     // Of a query for all pairs without a limit: goes on breadth first until there are so many pairs
@@ -54,10 +56,11 @@ class StaticQuery {
     // advanced at the same time; join() takes over what they found. The pairs and counts are those
     // of the undivided query.
     [[nodiscard]] std::vector<StaticQuery> divide(std::size_t count);
-    void join(std::span<const StaticQuery> parts);
+    void join(std::span<StaticQuery> parts);
 
     // Pairs of rows of the mesh files, sorted; the first contact found unless all were asked for.
     [[nodiscard]] std::span<const TrianglePair> pairs() const { return pairs_; }
+    [[nodiscard]] std::vector<TrianglePair> take_pairs() { return std::move(pairs_); }
     // Contact between boxes that stand for what they hold.
     [[nodiscard]] bool is_by_boxes() const { return is_by_boxes_; }
     [[nodiscard]] bool is_contact() const { return is_by_boxes_ || !pairs_.empty(); }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace obb {
 
@@ -86,6 +87,7 @@ struct TreeView {
     // Makes the first triangles under a node ready to be read, for those who look at them without
     // having come down to them.
     void prepare_triangles(const NodeRef& ref, std::uint32_t count) const;
+    void prepare_into(std::vector<NodeRef>& stack, const NodeRef& ref) const;
 
     // Of a node that is no leaf.
     [[nodiscard]] std::array<NodeRef, 2> children(const NodeRef& ref, const Node& node) const {
@@ -121,6 +123,31 @@ struct TreeView {
         const auto [p, q, r] = corners_of(position);
         return {*p, *q, *r};
     }
+};
+
+// Makes all triangles under a node ready to be read, as prepare_triangles() does, but in slices.
+class Preparation {
+  public:
+    // The tree must outlive it.
+    void begin(const TreeView& tree, const NodeRef& ref);
+
+    // Goes on until the clock says that a slice is over; true when all is ready.
+    template <typename Clock>
+    [[nodiscard]] bool advance(Clock& clock) {
+        while (!stack_.empty()) {
+            if (clock.is_over()) {
+                return false;
+            }
+            prepare_one();
+        }
+        return true;
+    }
+
+  private:
+    void prepare_one();
+
+    const TreeView* tree_ = nullptr;
+    std::vector<NodeRef> stack_;
 };
 
 } // namespace obb
