@@ -9,38 +9,49 @@ import click
 from obbcli import __version__
 from obbcli.cli.options import GuardedHelp
 
-# Name: module of this package; in the order a newcomer meets them.
-_COMMANDS = {
-    "collide": "collide",
-    "first-contact": "first_contact",
-    "distance": "distance",
-    "scene": "scene",
-    "sweep": "sweep",
-    "stability": "stability",
-    "tradeoff": "tradeoff",
-    "build": "build",
-    "info": "info",
-    "schema": "schema",
+# Heading: the commands under it, and their modules here; in the order a newcomer meets them.
+_GROUPS = {
+    "Two bodies": {
+        "collide": "collide",
+        "first-contact": "first_contact",
+        "distance": "distance",
+    },
+    "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
+    "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},
+    "Files": {"build": "build", "info": "info", "schema": "schema"},
 }
+_COMMANDS = {name: module for group in _GROUPS.values() for name, module in group.items()}
 
 _WELCOME = """\
-obbtree: do these two triangle meshes touch, and when first?
+obbtree: do these two triangle meshes touch while they move, and when and where first?
 
-  obbtree collide gear.stl shaft.obj     do they touch, and which triangles?
+  obbtree collide gear.stl shaft.obj
+      do they touch, and which triangles?
   obbtree first-contact gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -6
-                                         when and where do they first touch?
-  obbtree distance gear.stl shaft.obj    how far apart are they, and where?
-  obbtree scene cell.toml                the same of many bodies, earliest first
-  obbtree sweep gear.stl pinion.stl motions.csv -o contacts.jsonl
-                                         first-contact, once a row of a file
-  obbtree stability gear.stl pinion.stl --omega 0 0 3
-                                         which answers hold at the extremes?
-  obbtree tradeoff gear.stl pinion.stl --omega 0 0 3
-                                         what speed costs in accuracy, measured
-  obbtree info gear.stl                  what is in a mesh or tree file
-  obbtree build gear.stl                 keep the tree for later: gear.obbt
+      when and where do they first touch, with proof that they do not before?
+  obbtree scene cell.toml
+      the same of many bodies, earliest first
 
-Any command with --help tells the rest; obbtree --help lists all commands.
+obbtree --help lists all commands; obbtree COMMAND --help tells all of one.
+"""
+
+_EPILOG = """\b
+Examples:
+  obbtree collide housing.stl board.vtk --exit-code && echo "it fits"
+  obbtree first-contact gear.stl pinion.stl --omega 0 0 180 --degrees --duration 2
+  obbtree distance part.stl clamp.obbt --json | jq .result.bounds
+
+\b
+Exit codes:
+  0    answered, whatever the answer; with --exit-code: proven apart
+  1    with --exit-code: they touch
+  2    the command line is wrong
+  3    an input cannot be read, or is refused
+  4    unresolved, as a limit was reached; with --exit-code also: apart, but not proven so
+  5    an output cannot be written
+  6    tradeoff and stability: a guarantee of obbtree's own was seen broken
+  70   an error of obbtree's own
+  130  interrupted
 """
 
 
@@ -49,6 +60,25 @@ class _App(GuardedHelp, click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002  # click's signature
         return list(_COMMANDS)
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands, and then the few options that stand before them."""
+        self.format_commands(ctx, formatter)
+        click.Command.format_options(self, ctx, formatter)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands, one section a group, all in columns of one width."""
+        width = max(map(len, _COMMANDS))
+        for heading, names in _GROUPS.items():
+            commands = [(name, self.get_command(ctx, name)) for name in names]
+            with formatter.section(heading):
+                formatter.write_dl(
+                    [
+                        (name.ljust(width), one.get_short_help_str(80))
+                        for name, one in commands
+                        if one
+                    ]
+                )
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _COMMANDS:
@@ -93,14 +123,21 @@ def _options(app: click.Group, context: click.Context, name: str) -> list[str]:
     cls=_App,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    subcommand_metavar="COMMAND ...",
+    options_metavar="",
+    epilog=_EPILOG,
 )
 @click.version_option(__version__, "-V", "--version", message="%(prog)s %(version)s")
 @click.pass_context
 def app(context: click.Context) -> int:
-    """Do two triangle meshes touch, and when and where first? Proven answers from any mesh files.
+    """Do two triangle meshes touch while they move, and if so, when and where first?
 
-    Meshes: STL, OBJ, PLY, OFF, glTF, VTK, Gmsh, Abaqus and more; trees: .obbt, made by build.
-    Lengths are in the meshes' own unit, angles in radians unless --degrees is given.
+    Answers are proven: apart means apart at every instant, and a time of contact is a bracket with
+    no contact before it. What is not proven says so, and by how much it may be off.
+
+    A, B and FILE are meshes (STL, OBJ, PLY, OFF, glTF, VTK, Gmsh, Abaqus and more), trees made of
+    them by build (.obbt), or - for standard input. Lengths are in the meshes' own unit, times in
+    s, angles in rad or, with --degrees, in degrees.
     """
     if context.invoked_subcommand is None:
         from obbcli.cli.output import write_stdout

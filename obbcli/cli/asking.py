@@ -10,7 +10,14 @@ import click
 
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs, read_pair
-from obbcli.cli.options import CommonOptions, common_options, gathered, option, verify_option
+from obbcli.cli.options import (
+    TO_FILE,
+    CommonOptions,
+    common_options,
+    gathered,
+    option,
+    verify_option,
+)
 from obbcli.cli.progress import proving
 from obbcli.cli.question import (
     AccuracyOptions,
@@ -92,7 +99,7 @@ class Asked(NamedTuple):
         return Setting(sources, motion, question.accuracy, solid)
 
 
-def about_two(exit_code: str, output: str = "Write the answer to FILE.") -> Decorator:
+def about_two(exit_code: str, output: str = TO_FILE) -> Decorator:
     """Return what gives a command its A and B, and all options of `asked`.
 
     Args:

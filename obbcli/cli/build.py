@@ -74,14 +74,14 @@ build_options = gathered(
             "--max-depth",
             type=Whole(0),
             metavar="N",
-            help="Do not split boxes at level N [default: no limit].",
+            help="Do not split boxes at level N, the root being 0 [default: no limit].",
         ),
         option(
             _TREE,
             "--max-memory",
             callback=byte_count,
             metavar="BYTES",
-            help="Refuse a mesh whose build needs more, such as 500M or 2G [default: no limit].",
+            help="Refuse a mesh whose build needs more bytes, such as 500M [default: no limit].",
         ),
         option(_TREE, "--force", is_flag=True, help="Replace tree files that exist."),
     ),
@@ -102,7 +102,9 @@ Examples:
 @click.argument("meshes", metavar="MESH...", nargs=-1, required=True, type=PathName())
 @build_options
 @common_options(
-    "Write the tree to FILE, or the trees into DIR.", metavar="FILE|DIR", takes_dash=False
+    "Write the tree to FILE, or the trees into DIR [default: beside each mesh].",
+    metavar="FILE|DIR",
+    takes_dash=False,
 )
 def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -> int:
     """Build trees over meshes and keep them: gear.stl becomes gear.obbt.

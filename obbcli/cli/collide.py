@@ -58,7 +58,7 @@ Examples:
     "--limit",
     type=Whole(1),
     metavar="N",
-    help="List at most N pairs (with --all-pairs).",
+    help="With --all-pairs: list at most N pairs [default: all].",
 )
 @option(
     QUESTION,

@@ -46,7 +46,7 @@ Examples:
     "--limit",
     type=Whole(1),
     metavar="N",
-    help="List the first N pairs that meet, or N of --all-contacts.",
+    help="List the first N pairs that meet, or N of --all-contacts [default: none, or all].",
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")

@@ -7,6 +7,7 @@ groups and not thirty options.
 from __future__ import annotations
 
 import functools
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 
 _COMMON = "Common"
+TO_FILE = "Write the answer to FILE [default: standard output]."
+"""What `-o` does."""
 
 
 class GroupedOption(click.Option):
@@ -30,6 +33,11 @@ class GroupedOption(click.Option):
     def __init__(self, *args: Any, group: str, **attributes: Any) -> None:
         super().__init__(*args, **attributes)
         self.group = group
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        """Return names and text, a default within the last sentence wherever it was given."""
+        record = super().get_help_record(ctx)
+        return record and (record[0], re.sub(r"\.  (\[default: .*\])$", r" \1.", record[1]))
 
 
 class GuardedHelp(click.Command):
@@ -65,7 +73,8 @@ def option(group: str, *names: str, **attributes: Any) -> Decorator:
 
 def vector(group: str, name: str, text: str) -> Decorator:
     """Return an option of three finite numbers; negative ones and exponents are numbers too."""
-    return option(group, name, nargs=3, type=Finite(), metavar="X Y Z", help=text)
+    whole = text if "[default:" in text else f"{text.removesuffix('.')} [default: 0 0 0]."
+    return option(group, name, nargs=3, type=Finite(), metavar="X Y Z", help=whole)
 
 
 def gathered(name: str, cls: type[tuple[Any, ...]], options: tuple[Decorator, ...]) -> Decorator:
@@ -116,7 +125,10 @@ def _place(context: click.Context, param: click.Parameter, name: str | None) -> 
 
 
 def common_options(
-    output: str = "Write the answer to FILE.", *, metavar: str = "FILE", takes_dash: bool = True
+    output: str = TO_FILE,
+    *,
+    metavar: str = "FILE",
+    takes_dash: bool = True,
 ) -> Decorator:
     """Return the options of every command.
 

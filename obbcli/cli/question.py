@@ -61,10 +61,10 @@ pose_options = gathered(
     PoseOptions,
     (
         vector(_POSE, "--translate", "Shift A, in mesh units."),
-        vector(_POSE, "--rotate", "Turn A about the origin first: axis times angle, in radians."),
-        vector(_POSE, "--translate-b", "Shift B."),
-        vector(_POSE, "--rotate-b", "Turn B about the origin first."),
-        option(_POSE, "--degrees", is_flag=True, help="Angles and spins are in degrees."),
+        vector(_POSE, "--rotate", "Turn A about the origin first: axis times angle, in rad."),
+        vector(_POSE, "--translate-b", "Shift B, in mesh units."),
+        vector(_POSE, "--rotate-b", "Turn B about the origin first: axis times angle, in rad."),
+        option(_POSE, "--degrees", is_flag=True, help="Angles are in degrees, spins in degrees/s."),
     ),
 )
 
@@ -114,18 +114,30 @@ motion_options = gathered(
     "motion",
     MotionOptions,
     (
-        vector(_MOTION, "--vel", "Linear velocity of A, in mesh units a second."),
-        vector(_MOTION, "--omega", "Angular velocity of A, in rad/s, world frame."),
-        vector(_MOTION, "--pivot", "Where A's axis passes at t = 0 [default: A's centroid]."),
-        vector(_MOTION, "--vel-b", "Linear velocity of B."),
-        vector(_MOTION, "--omega-b", "Angular velocity of B."),
-        vector(_MOTION, "--pivot-b", "Where B's axis passes at t = 0 [default: B's centroid]."),
+        vector(_MOTION, "--vel", "Linear velocity of A, in mesh units/s."),
+        vector(
+            _MOTION, "--omega", "Angular velocity of A, world frame: axis times spin, in rad/s."
+        ),
+        vector(
+            _MOTION,
+            "--pivot",
+            "Where A's axis passes at t = 0, in mesh units [default: A's centroid].",
+        ),
+        vector(_MOTION, "--vel-b", "Linear velocity of B, in mesh units/s."),
+        vector(
+            _MOTION, "--omega-b", "Angular velocity of B, world frame: axis times spin, in rad/s."
+        ),
+        vector(
+            _MOTION,
+            "--pivot-b",
+            "Where B's axis passes at t = 0, in mesh units [default: B's centroid].",
+        ),
         option(
             _MOTION,
             "--duration",
             type=Finite(0),
             metavar="T",
-            help="Ask about 0 <= t <= T, in seconds [default: 1 where a body moves, else 0].",
+            help="Ask about 0 <= t <= T, in s [default: 1 where a body moves, else 0].",
         ),
     ),
 )
@@ -196,10 +208,20 @@ accuracy_options = gathered(
             "--max-depth",
             type=_DEPTH,
             metavar="N",
-            help="Use both trees down to level N only, 0 the root boxes [default: the triangles].",
+            help="Use trees down to level N only, 0 the root boxes [default: to the triangles].",
         ),
-        _accuracy("--max-depth-a", type=_DEPTH, metavar="N", help="The same for A alone."),
-        _accuracy("--max-depth-b", type=_DEPTH, metavar="N", help="The same for B alone."),
+        _accuracy(
+            "--max-depth-a",
+            type=_DEPTH,
+            metavar="N",
+            help="The same for A alone [default: as --max-depth].",
+        ),
+        _accuracy(
+            "--max-depth-b",
+            type=_DEPTH,
+            metavar="N",
+            help="The same for B alone [default: as --max-depth].",
+        ),
         _accuracy(
             "--leaves",
             type=click.Choice(get_args(Leaves)),
@@ -219,7 +241,7 @@ accuracy_options = gathered(
             "--steps",
             type=_COUNT,
             metavar="N",
-            help=f"Sample in N steps [default: {Accuracy.steps}].",
+            help=f"Sample in N equal steps of time [default: {Accuracy.steps}].",
         ),
         _accuracy(
             "--clearance",
@@ -231,13 +253,14 @@ accuracy_options = gathered(
             "--max-iterations",
             type=_COUNT,
             metavar="N",
-            help=f"Give up, unresolved, after N steps [default: {Accuracy.max_iterations:,}].",
+            help="Give up, unresolved, after N pops of the queue "
+            f"[default: {Accuracy.max_iterations:,}].",
         ),
         _accuracy(
             "--timeout",
             type=Finite(0),
             metavar="S",
-            help="Give up, unresolved, after S seconds [default: never].",
+            help="Give up, unresolved, after S seconds of work [default: never].",
         ),
     ),
 )

@@ -58,11 +58,17 @@ Examples:
     "--pairs",
     multiple=True,
     metavar="A,B",
-    help="Ask about these two bodies alone (repeatable).",
+    help="Ask about these two bodies alone; repeatable [default: all pairs].",
 )
 @option(QUESTION, "--first", is_flag=True, help="Stop at the scene's earliest contact.")
 @option(QUESTION, "--all-contacts", is_flag=True, help="List every pair of triangles that meets.")
-@option(QUESTION, "--limit", type=Whole(1), metavar="N", help="List the first N contacts.")
+@option(
+    QUESTION,
+    "--limit",
+    type=Whole(1),
+    metavar="N",
+    help="List the first N contacts [default: all].",
+)
 @option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
 @option(
     QUESTION,
@@ -75,7 +81,7 @@ Examples:
     "--duration",
     type=Finite(0),
     metavar="T",
-    help="Ask about 0 <= t <= T, in seconds [default: as the file says].",
+    help="Ask about 0 <= t <= T, in s [default: as the file says].",
 )
 @accuracy_options
 @verify_option

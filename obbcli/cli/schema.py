@@ -26,7 +26,7 @@ Examples:
 """,
 )
 @click.argument("name", metavar="[COMMAND]", required=False, type=click.Choice(NAMES))
-@common_options("Write the schema to FILE.")
+@common_options("Write the schema to FILE [default: standard output].")
 def command(name: str | None, common: CommonOptions) -> int:
     """Print the JSON Schema (draft 2020-12) of a command's documents, or one of them all.
 

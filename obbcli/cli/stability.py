@@ -44,7 +44,7 @@ Examples:
     "--plot",
     type=PathName(),
     metavar="FILE",
-    help="Draw what held: .svg or .png (needs obbtree[plot]).",
+    help="Draw what held into FILE, .svg or .png; needs obbtree[plot].",
 )
 @about_two("Exit with 1 where they touch, 0 where proven apart; 6 where anything is broken.")
 def command(asked: Asked, plot: str | None) -> int:

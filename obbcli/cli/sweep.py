@@ -67,7 +67,8 @@ sweep_options = gathered(
             "--workers",
             type=Whole(1),
             metavar="N",
-            help="Start a Dask cluster of N processes for it (needs obbtree[distributed]).",
+            help="Start a Dask cluster of N processes for it [default: threads alone]; needs "
+            "obbtree[distributed].",
         ),
         option(
             _SWEEP, "--scheduler", metavar="ADDRESS", help="Use the Dask cluster that is there."
@@ -89,7 +90,7 @@ Examples:
 )
 @about_two(
     "Exit with 1 where any row touches, 0 where all are proven apart.",
-    "Write the results to FILE, a JSON object a line.",
+    "Write the results to FILE, a JSON object a line; required.",
 )
 @click.argument("queries", metavar="QUERIES", type=PathName())
 @sweep_options

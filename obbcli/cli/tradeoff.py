@@ -74,38 +74,40 @@ _wanted_options = gathered(
             QUESTION,
             "--budget",
             type=Finite(0),
-            default=60.0,
+            default=60,
             show_default=True,
             metavar="S",
-            help="Measure for so many seconds at most.",
+            help="Measure for S seconds at most.",
         ),
         option(
             QUESTION,
             "--max-error",
             type=Finite(0),
             metavar="E",
-            help="Name the fastest setting that errs by no more, in s.",
+            help="Name the fastest setting that errs by no more than E, in s [default: name none].",
         ),
         option(
             QUESTION,
             "--max-gap",
             type=Finite(0),
             metavar="D",
-            help="Name the fastest setting that says contact of surfaces no further apart.",
+            help="Name the fastest setting that says contact of surfaces no further than D apart, "
+            "in mesh units [default: name none].",
         ),
         option(
             QUESTION,
             "--max-time",
             type=Finite(0),
             metavar="S",
-            help="Name the most accurate setting that takes no longer, in s a question.",
+            help="Name the most accurate setting that takes no longer than S seconds a question "
+            "[default: name none].",
         ),
         option(
             QUESTION,
             "--plot",
             type=PathName(),
             metavar="FILE",
-            help="Draw error against time: .svg or .png (needs obbtree[plot]).",
+            help="Draw error against time into FILE, .svg or .png; needs obbtree[plot].",
         ),
     ),
 )
@@ -114,7 +116,7 @@ _wanted_options = gathered(
 @click.command(
     "tradeoff",
     cls=Command,
-    short_help="What does speed cost in accuracy, on these meshes in this motion?",
+    short_help="What does speed cost in accuracy, measured on A and B?",
     epilog="""\b
 Examples:
   obbtree tradeoff gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -5.9 --duration 2

@@ -106,13 +106,6 @@ def test_answer_goes_to_a_device_without_replacing_it(here, obbtree):
     assert obbtree("collide", "cube.stl", "apart.obj", "-q", "-o", "-").out == "separated\n"
 
 
-def test_no_arguments_show_the_three_most_useful_commands(obbtree):
-    ended = obbtree()
-
-    assert ended.code == 0
-    assert all(f"obbtree {name}" in ended.out for name in COMMANDS)
-
-
 def test_help_lists_the_commands(obbtree):
     ended = obbtree("--help")
 
