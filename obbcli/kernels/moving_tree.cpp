@@ -9,27 +9,6 @@ namespace obb {
 
 namespace {
 
-Mat3 product(const Mat3& a, const Mat3& b) {
-    Mat3 result;
-    for (std::size_t i = 0; i < 3; ++i) {
-        result.rows[i] = {dot(a.rows[i], b.column(0)), dot(a.rows[i], b.column(1)),
-                          dot(a.rows[i], b.column(2))};
-    }
-    return result;
-}
-
-// Bounds how far from orthonormal axes are that a matrix turns: their own defect is rounding.
-double skew_of(const Mat3& m) {
-    double defect = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            const double wanted = i == j ? 1 : 0;
-            defect = std::max(defect, std::fabs(dot(m.column(i), m.column(j)) - wanted));
-        }
-    }
-    return 3 * defect + 0x1p-45;
-}
-
 // Middle of the root, posed, and a radius about it that holds the body; mesh units.
 struct Ball {
     Vec3 center;
@@ -52,7 +31,8 @@ Ball ball_around(const TreeView& tree, const Pose& pose) {
 
 MovingTree::MovingTree(const TreeView& tree, const Pose& pose, const Screw& screw)
     : tree_(&tree), pose_(pose), screw_(screw), spin_(screw.angular_velocity) {
-    skew_ = skew_of(pose.rotation);
+    // Axes that the matrix turns have a defect of their own, which is rounding.
+    skew_ = 3 * skew_of(pose.rotation) + 0x1p-45;
     const Ball ball = ball_around(tree, pose);
     if (spin_.is_still()) {
         screw_.pivot = ball.center;
@@ -76,7 +56,7 @@ Obb MovingTree::box(const NodeRef& ref) const {
         return box_around(triangle(ref));
     }
     const Node& node = tree_->node(ref);
-    const Mat3 spun = spin_.matrix(turn_), matrix = product(spun, pose_.rotation);
+    const Mat3 spun = spin_.matrix(turn_), matrix = spun * pose_.rotation;
     Obb box{matrix * (node_scale_ * node.center) + spun * offset_, axes_of(node.rotation),
             node_scale_ * half_extents_of(node)};
     for (Vec3& axis : box.axes) {

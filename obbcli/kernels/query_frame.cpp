@@ -1,6 +1,5 @@
 #include "query_frame.hpp"
 
-#include "extremes.hpp"
 #include "scale.hpp"
 
 #include <algorithm>
@@ -22,26 +21,6 @@ Mat3 inverse(const Mat3& m) {
     const double scale = 1.0 / dot(m.rows[0], c0);
     return {{scale * Vec3{c0.x, c1.x, c2.x}, scale * Vec3{c0.y, c1.y, c2.y},
              scale * Vec3{c0.z, c1.z, c2.z}}};
-}
-
-Mat3 product(const Mat3& a, const Mat3& b) {
-    Mat3 result;
-    for (std::size_t i = 0; i < 3; ++i) {
-        result.rows[i] = {dot(a.rows[i], b.column(0)), dot(a.rows[i], b.column(1)),
-                          dot(a.rows[i], b.column(2))};
-    }
-    return result;
-}
-
-// Largest entry of |M^T M - 1|.
-double skew_of(const Mat3& m) {
-    double skew = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            skew = larger(skew, std::fabs(dot(m.column(i), m.column(j)) - (i == j ? 1.0 : 0.0)));
-        }
-    }
-    return skew;
 }
 
 // Coordinates of a posed mesh stay below three times its largest coordinate plus the translation.
@@ -84,7 +63,7 @@ QueryFrame set_common_frame(PosedTree& a, PosedTree& b) {
         return {exponent, {64 * kUnitRoundoff, rounding + kTiny}, shrink_of(skew_a)};
     }
     const Mat3 to_a = inverse(pa.rotation);
-    const Mat3 matrix = product(to_a, pb.rotation);
+    const Mat3 matrix = to_a * pb.rotation;
     const Vec3 offset =
         to_a * (scaled(pb.translation, -exponent) - scaled(pa.translation, -exponent));
     b.set_frame(matrix, offset, exponent);

@@ -73,6 +73,29 @@ struct Mat3 {
     return {dot(m.rows[0], v), dot(m.rows[1], v), dot(m.rows[2], v)};
 }
 
+[[nodiscard]] inline Mat3 operator*(const Mat3& a, const Mat3& b) {
+    const Vec3 c0 = b.column(0), c1 = b.column(1), c2 = b.column(2);
+    Mat3 result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 row = a.rows[i];
+        result.rows[i] = {dot(row, c0), dot(row, c1), dot(row, c2)};
+    }
+    return result;
+}
+
+// How far columns are from orthonormal: the largest entry of |M^T M - 1|.
+[[nodiscard]] inline double skew_of(const Mat3& m) {
+    double largest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            const double wanted = i == j ? 1 : 0;
+            const double entry = std::fabs(dot(m.column(i), m.column(j)) - wanted);
+            largest = largest < entry ? entry : largest;
+        }
+    }
+    return largest;
+}
+
 // Unit roundoff of double: half a unit in the last place of 1.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
