@@ -42,7 +42,7 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
             chosen = "ansys"  # Fluent's format, of the same suffix
         check_claims(source, chosen)
         module = fenced(source, "meshio", lambda: import_module(f"meshio.{chosen}"))
-        with _as_file(source, suffix) as path, ending_files("meshio."):
+        with _as_file(source, suffix) as path, ending_files("meshio.", path):
             mesh = fenced(source, "meshio", lambda: module.read(str(path)))
         points = _points(source, mesh.points)
         blocks = [(block.type, block.data) for block in mesh.cells]
@@ -63,8 +63,8 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
 def _as_file(source: Source, suffix: str) -> Iterator[Path]:
     """Give the path of a file with exactly the bytes that were hashed.
 
-    The file itself, where it is one, since some formats name others beside it; it is compared
-    again afterwards. Bytes from a stream go to a temporary file.
+    The file itself, where it is one; it is compared again afterwards. Bytes from a stream go to a
+    temporary file.
     """
     if source.path is not None and source.path.is_file():
         yield source.path

@@ -163,6 +163,21 @@ def test_cells_refuse_a_file_that_changes_meanwhile(tmp_path, monkeypatch):
         load_mesh(path)
 
 
+@pytest.mark.parametrize("place", ["{folder}/other.inp", "other.inp", "a.inp"])
+def test_cells_read_no_file_but_their_own(tmp_path, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    triangle = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n*ELEMENT, TYPE=S3\n1, 1, 2, 3\n"
+    (tmp_path / "other.inp").write_text(triangle)
+    (tmp_path / "kept.inp").write_text(triangle)
+    (tmp_path / "a.inp").write_text(
+        f"{triangle}*INCLUDE, INPUT={place.format(folder=tmp_path)}\n*END STEP\n"
+    )
+
+    assert len(load_mesh("kept.inp").triangles) == 1
+    with pytest.raises(MeshError, match=r"a\.inp"):
+        load_mesh(tmp_path / "a.inp")
+
+
 def test_cells_leave_the_memory_limit_and_the_libraries_as_they_were():
     code = (
         "import resource; before = resource.getrlimit(resource.RLIMIT_AS)\n"
