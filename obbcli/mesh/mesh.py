@@ -194,6 +194,7 @@ def _frozen(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     owner = array if array.base is None else array.base
     owned = isinstance(owner, np.ndarray) and owner.base is None
     owned = owned and not owner.flags.writeable and not array.flags.writeable
-    frozen: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=None if owned else True)
+    taken = np.asarray if owned else np.array
+    frozen: NDArray[Any] = taken(array, dtype=dtype, order="C")
     frozen.setflags(write=False)
     return frozen
