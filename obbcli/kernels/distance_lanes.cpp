@@ -72,16 +72,7 @@ Gaps gaps_of(const Four& lanes) { return {lanes[0], lanes[1], lanes[2], lanes[3]
 } // namespace
 
 OBB_WIDE BoxGaps box_gaps(const BasicObb<Four>& boxes, const RoundingBound& bound) {
-    const auto shuffled = [&](const FourMask& order) {
-        const auto one = [&](const Vector3<Four>& v) {
-            return Vector3<Four>{__builtin_shuffle(v.x, order), __builtin_shuffle(v.y, order),
-                                 __builtin_shuffle(v.z, order)};
-        };
-        return BasicObb<Four>{one(boxes.center),
-                              {one(boxes.axes[0]), one(boxes.axes[1]), one(boxes.axes[2])},
-                              one(boxes.half_extents)};
-    };
-    const BasicObb<Four> a = shuffled(FourMask{0, 1, 0, 1}), b = shuffled(FourMask{2, 3, 3, 2});
+    const BasicObb<Four> a = shuffled<0, 1, 0, 1>(boxes), b = shuffled<2, 3, 3, 2>(boxes);
     const Vector3<Four> between = b.center - a.center;
     return {gaps_of(distance_square(a, b, bound)), gaps_of(dot(between, between))};
 }

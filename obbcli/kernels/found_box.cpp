@@ -12,10 +12,10 @@ std::vector<std::pair<double, const BodyEdge*>> edges_at_sides(const HullBody& b
     constexpr double kNear = 1e-6;
     constexpr std::ptrdiff_t kMost = 8;
     const auto [low, high] = body.range_along(n);
-    const double slack = kNear * (high - low);
+    const double slack = kNear * (high - low), low_side = low + slack, high_side = high - slack;
     const auto is_near = [&](std::uint32_t corner) {
         const double s = dot(n, body.corners[corner]);
-        return s <= low + slack || s >= high - slack;
+        return s <= low_side || s >= high_side;
     };
     std::vector<std::pair<double, const BodyEdge*>> found;
     for (const BodyEdge& edge : body.edges) {
@@ -66,9 +66,11 @@ bool improve_by_edges(const HullBody& body, FoundBox& best) {
     const auto second = edges_at_sides(body, start[1]);
     const auto third = edges_at_sides(body, start[2]);
     bool improved = false;
-    for (const auto& [_0, e0] : first) {
-        for (const auto& [_1, e1] : second) {
-            for (const auto& [_2, e2] : third) {
+    for (const auto& near_first : first) {
+        for (const auto& near_second : second) {
+            for (const auto& near_third : third) {
+                const BodyEdge *e0 = near_first.second, *e1 = near_second.second,
+                               *e2 = near_third.second;
                 each_frame_across(e0->along, e1->along, e2->along, [&](const Axes& axes) {
                     if (body.is_supported(*e0, axes[0], slack) &&
                         body.is_supported(*e1, axes[1], slack) &&

@@ -10,10 +10,11 @@
 #include <limits>
 
 // A function is compiled for wider registers as well, and the loader chooses; both give the same
-// bits. Its callees are drawn into it. Sanitizers come too late for the loader's choice. With
-// OBB_NARROW no register is wider than every machine's, for comparison.
+// bits. Its callees are drawn into it, which Clang cannot do together with the choice. Sanitizers
+// come too late for it. With OBB_NARROW no register is wider than every machine's, for comparison.
 #if !defined(OBB_NARROW) && defined(__x86_64__) && defined(__gnu_linux__) &&                       \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__has_attribute)
+    !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&      \
+    defined(__has_attribute)
 #if __has_attribute(target_clones) && __has_attribute(flatten)
 #define OBB_WIDE [[gnu::flatten, gnu::target_clones("avx2", "default")]]
 #endif
@@ -36,14 +37,20 @@ namespace obb {
 [[nodiscard]] inline Vector3<Four> halves(Vec3 low, Vec3 high) {
     return {halves(low.x, high.x), halves(low.y, high.y), halves(low.z, high.z)};
 }
-[[nodiscard]] inline Four swapped(Four a) { return __builtin_shuffle(a, FourMask{2, 3, 0, 1}); }
-[[nodiscard]] inline Vector3<Four> swapped(const Vector3<Four>& v) {
-    return {swapped(v.x), swapped(v.y), swapped(v.z)};
+template <int... Order>
+[[nodiscard]] inline Vector3<Four> shuffled(const Vector3<Four>& v) {
+    return {shuffled<Order...>(v.x), shuffled<Order...>(v.y), shuffled<Order...>(v.z)};
 }
-[[nodiscard]] inline BasicObb<Four> swapped(const BasicObb<Four>& b) {
-    return {swapped(b.center),
-            {swapped(b.axes[0]), swapped(b.axes[1]), swapped(b.axes[2])},
-            swapped(b.half_extents)};
+template <int... Order>
+[[nodiscard]] inline BasicObb<Four> shuffled(const BasicObb<Four>& b) {
+    return {shuffled<Order...>(b.center),
+            {shuffled<Order...>(b.axes[0]), shuffled<Order...>(b.axes[1]),
+             shuffled<Order...>(b.axes[2])},
+            shuffled<Order...>(b.half_extents)};
+}
+template <typename Lanes>
+[[nodiscard]] inline Lanes swapped(const Lanes& lanes) {
+    return shuffled<2, 3, 0, 1>(lanes);
 }
 [[nodiscard]] inline Vector3<Four> cross(const Vector3<Four>& a, const Vector3<Four>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -139,7 +139,7 @@ void LargeRanges::move(const NodeRef& ref, const Entry& entry,
         const std::uint32_t left_before = before[chunk].below + ties;
         ties = threshold.tie_count - ties;
         for (std::uint32_t i = begin; i < end; ++i) {
-            const std::uint32_t is_tie = (keys_[i] == threshold.key) & (ties > 0) ? 1 : 0;
+            const std::uint32_t is_tie = ((keys_[i] == threshold.key) & (ties > 0)) ? 1 : 0;
             const std::uint32_t is_left = (keys_[i] < threshold.key ? 1U : 0U) | is_tie;
             ties -= is_tie;
             sources[0][found[0]] = sources[1][found[1]] = static_cast<std::uint16_t>(i - begin);

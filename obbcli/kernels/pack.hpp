@@ -57,6 +57,15 @@ inline constexpr std::size_t kAlignment<Four> = sizeof(Four);
 [[nodiscard]] inline double select(bool mask, double a, double b) { return mask ? a : b; }
 [[nodiscard]] inline Pack select(PackMask mask, Pack a, Pack b) { return mask ? a : b; }
 [[nodiscard]] inline Four select(FourMask mask, Four a, Four b) { return mask ? a : b; }
+// Lane k of the result is lane Order[k] of `a`. Each compiler has a name of its own for it.
+template <int... Order>
+[[nodiscard]] inline Four shuffled(Four a) {
+#ifdef __clang__
+    return __builtin_shufflevector(a, a, Order...);
+#else
+    return __builtin_shuffle(a, FourMask{Order...});
+#endif
+}
 template <typename Real>
 [[nodiscard]] inline Real maximum(Real a, Real b) {
     return select(a > b, a, b);

@@ -29,14 +29,6 @@ namespace {
     boxes.center = turned(center) + frame.shift;
 }
 
-template <typename Shuffle>
-BasicObb<Four> shuffled(const BasicObb<Four>& b, Shuffle shuffle) {
-    const auto all = [&](const Vector3<Four>& v) {
-        return Vector3<Four>{shuffle(v.x), shuffle(v.y), shuffle(v.z)};
-    };
-    return {all(b.center), {all(b.axes[0]), all(b.axes[1]), all(b.axes[2])}, all(b.half_extents)};
-}
-
 } // namespace
 
 OBB_WIDE void place_boxes(const LaneFrame& frame, const FourNodes& nodes, BasicObb<Four>& boxes) {
@@ -46,10 +38,7 @@ OBB_WIDE void place_boxes(const LaneFrame& frame, const FourNodes& nodes, BasicO
 OBB_WIDE unsigned meeting_pairs(const LaneFrame& frame, const FourNodes& nodes,
                                 const RoundingBound& bound, BasicObb<Four>& boxes) {
     place(frame, nodes, boxes);
-    const auto a =
-        shuffled(boxes, [](Four v) { return __builtin_shuffle(v, FourMask{0, 0, 1, 1}); });
-    const auto b =
-        shuffled(boxes, [](Four v) { return __builtin_shuffle(v, FourMask{2, 3, 2, 3}); });
+    const BasicObb<Four> a = shuffled<0, 0, 1, 1>(boxes), b = shuffled<2, 3, 2, 3>(boxes);
     return bits_of(~are_separated(a, b, bound));
 }
 

@@ -132,9 +132,10 @@ class Sweep {
         // Of the same two bodies the earliest.
         const auto by_pair = [](const NearPair& p) { return std::tuple(p.a, p.b, p.time); };
         std::ranges::sort(pairs_, {}, by_pair);
-        const auto rest = std::ranges::unique(
-            pairs_, [](const NearPair& p, const NearPair& q) { return p.a == q.a && p.b == q.b; });
-        pairs_.erase(rest.begin(), rest.end());
+        const auto is_same = [](const NearPair& p, const NearPair& q) {
+            return p.a == q.a && p.b == q.b;
+        };
+        pairs_.erase(std::unique(pairs_.begin(), pairs_.end(), is_same), pairs_.end());
         std::ranges::sort(pairs_, {},
                           [](const NearPair& p) { return std::tuple(p.time, p.a, p.b); });
         return std::move(pairs_);
