@@ -67,8 +67,9 @@ struct RegisterOf;
     struct RegisterOf<number, bytes> {                                                             \
         using Type = number __attribute__((vector_size(bytes)));                                   \
         using Mask = integer __attribute__((vector_size(bytes)));                                  \
-        using Stored =                                                                             \
-            number __attribute__((vector_size(bytes), aligned(sizeof(number)), may_alias));        \
+        struct __attribute__((packed, may_alias)) Stored {                                         \
+            Type lanes;                                                                            \
+        };                                                                                         \
     };
 OBB_REGISTER(double, std::int64_t, 16)
 OBB_REGISTER(float, std::int32_t, 16)
@@ -128,7 +129,7 @@ struct Lanes {
     static OBB_INLINE Lanes at(const Number* from) {
         Lanes lanes;
         for (std::size_t r = 0; r < kRegisters; ++r) {
-            lanes.parts[r] = *reinterpret_cast<const Stored*>(from + r * kInRegister);
+            lanes.parts[r] = reinterpret_cast<const Stored*>(from + r * kInRegister)->lanes;
         }
         return lanes;
     }
@@ -145,7 +146,7 @@ struct Lanes {
     }
     OBB_INLINE void store(Number* to) const {
         for (std::size_t r = 0; r < kRegisters; ++r) {
-            *reinterpret_cast<Stored*>(to + r * kInRegister) = parts[r];
+            reinterpret_cast<Stored*>(to + r * kInRegister)->lanes = parts[r];
         }
     }
 
