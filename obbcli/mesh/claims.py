@@ -33,6 +33,8 @@ _CLAIMS = {
 #: Images and other grids whose points are implied by three numbers.
 _GRID = re.compile(rb"^[ \t]*DIMENSIONS[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]+(-?\d+)", _LINE)
 _LARGEST_GRID = 1 << 24
+#: A longer number counts nothing in any file, and takes Python long to read, or too long.
+_MOST_DIGITS = 30
 
 
 def check_claims(source: Source, kind: str) -> None:
@@ -49,21 +51,35 @@ def check_claims(source: Source, kind: str) -> None:
     pattern = _CLAIMS.get(kind)
     for match in pattern.finditer(data) if pattern else ():
         for group in match.groups(b"0"):
-            count = int(group)
+            count = _number(source, group, match.start(1))
             if not 0 <= count <= len(data):
                 raise source.error(
                     f"claims {count} of something, but the file has {len(data)} bytes",
                     "it was cut short, or its counts are wrong",
-                    at=str(data.count(b"\n", 0, match.start(1)) + 1),
+                    at=_line_at(source, match.start(1)),
                 )
     for match in _GRID.finditer(data) if kind == "vtk" else ():
-        x, y, z = map(int, match.groups())
+        x, y, z = (_number(source, group, match.start(1)) for group in match.groups())
         if min(x, y, z) < 0 or x * y * z > _LARGEST_GRID:
             raise source.error(
                 f"is a grid of {x} x {y} x {z} points, at most {_LARGEST_GRID} are read",
                 "extract its surface",
-                at=str(data.count(b"\n", 0, match.start(1)) + 1),
+                at=_line_at(source, match.start(1)),
             )
+
+
+def _line_at(source: Source, position: int) -> str:
+    return str(source.data.count(b"\n", 0, position) + 1)
+
+
+def _number(source: Source, digits: bytes, position: int) -> int:
+    if len(digits) > _MOST_DIGITS:
+        raise source.error(
+            f"claims a count of {len(digits)} digits",
+            "its counts are wrong",
+            at=_line_at(source, position),
+        )
+    return int(digits)
 
 
 def check_count(source: Source, kind: str, count: int) -> None:

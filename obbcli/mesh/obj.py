@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from obbcli.mesh.polygons import fans
-from obbcli.mesh.text import all_numbers, all_whole, number, strip_mark, uniform_words
+from obbcli.mesh.text import all_numbers, all_whole, number, shown, strip_mark, uniform_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -141,12 +141,11 @@ def _index(source: Source, word: bytes, line: int, count: int) -> int:
     """Return the 0-based vertex that a face's word names; later vertices are checked at the end."""
     part = word.partition(b"/")[0]
     try:
-        index = int(part)
+        index = int(part) if len(part) < 40 else None
     except ValueError:
         index = None
     if index is None or b"_" in part:
-        shown = word.decode("latin-1")
-        raise source.error(f"'{shown}' is not a vertex of a face", at=str(line))
+        raise source.error(f"'{shown(word)}' is not a vertex of a face", at=str(line))
     if index > 0:
         return index - 1
     if index < 0 and index >= -count:
@@ -185,15 +184,14 @@ def _check_numbers(source: Source, words: list[bytes], line: int) -> None:
 
 def _unknown(source: Source, keyword: bytes, line: int) -> MeshError:
     """Return the error of a statement that cannot be passed over."""
-    shown = keyword[:40].decode("latin-1")
     if keyword in _REFUSED:
         return source.error(
-            f"'{shown}' is a {_REFUSED[keyword]}, which is not read",
+            f"'{shown(keyword)}' is a {_REFUSED[keyword]}, which is not read",
             "export the model as triangles",
             at=str(line),
         )
     return source.error(
-        f"'{shown}' is no OBJ statement",
+        f"'{shown(keyword)}' is no OBJ statement",
         "remove the line if it is no part of the shape",
         at=str(line),
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.text import whole
+from obbcli.mesh.text import shown, whole
 
 if TYPE_CHECKING:
     from obbcli.mesh.source import Source
@@ -110,8 +110,7 @@ def _declare(
     elif words[0] == b"property" and elements:
         elements[-1].properties.append(_property(source, words, line, order, elements[-1]))
     else:
-        shown = words[0][:40].decode("latin-1")
-        raise source.error(f"'{shown}' is out of place in a PLY header", at=str(line))
+        raise source.error(f"'{shown(words[0])}' is out of place in a PLY header", at=str(line))
 
 
 def _format(source: Source, words: list[bytes], line: int) -> str:
@@ -132,9 +131,11 @@ def _element(source: Source, words: list[bytes], line: int, before: list[Element
     count = whole(source, words[2], line, "count")
     name = words[1].decode("latin-1")
     if count < 0:
-        raise source.error(f"element {name} has the negative count {count}", at=str(line))
+        raise source.error(
+            f"element {shown(words[1])} has the negative count {count}", at=str(line)
+        )
     if any(element.name == name for element in before):
-        raise source.error(f"element {name} is declared twice", at=str(line))
+        raise source.error(f"element {shown(words[1])} is declared twice", at=str(line))
     return Element(name, count, line)
 
 
@@ -151,5 +152,5 @@ def _property(
         raise source.error("a list's length must be of a whole type", at=str(line))
     name = words[-1].decode("latin-1")
     if any(prop.name == name for prop in element.properties):
-        raise source.error(f"property {name} is declared twice", at=str(line))
+        raise source.error(f"property {shown(words[-1])} is declared twice", at=str(line))
     return Property(name, types[-1], types[0] if is_list else None)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.text import all_numbers, number, strip_mark
+from obbcli.mesh.text import all_numbers, number, shown, strip_mark
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -193,8 +193,7 @@ def _read_words(source: Source, text: bytes) -> NDArray[np.float64]:
                 numbers.append(number(source, word, line))
             place += 1
         elif word.lower() != wanted:
-            found = word.decode("latin-1")
-            raise source.error(f"found '{found}', expected '{wanted.decode()}'", at=str(line))
+            raise source.error(f"found '{shown(word)}', expected '{wanted.decode()}'", at=str(line))
         else:
             place = (place + 1) % len(_FACET)
     if place or inside:

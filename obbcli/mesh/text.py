@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from obbcli.mesh.source import Source
 
 _UTF8_MARK = b"\xef\xbb\xbf"
+#: Of a word that is none of those expected, so much is shown; no whole number is longer.
+_SHOWN = 40
 
 
 def strip_mark(data: bytes) -> bytes:
@@ -27,27 +29,33 @@ def number(source: Source, word: bytes, line: int) -> float:
     Raises:
         MeshError: no number, or not finite; Python's digit underscores are not taken.
     """
-    shown = word.decode("latin-1")
+    spelled = shown(word)
     try:
         value = float(word)
     except ValueError:
         value = None
     if value is None or b"_" in word:
-        raise source.error(f"'{shown}' is not a number", at=str(line))
+        raise source.error(f"'{spelled}' is not a number", at=str(line))
     if not math.isfinite(value):
-        raise source.error(f"coordinate is {shown}", "coordinates must be finite", at=str(line))
+        raise source.error(f"coordinate is {spelled}", "coordinates must be finite", at=str(line))
     return value
 
 
 def whole(source: Source, word: bytes, line: int, what: str) -> int:
     """Return the whole number that `word` spells; `what` names it in errors."""
     try:
-        if b"_" in word:
+        if b"_" in word or len(word) > _SHOWN:
             raise ValueError
         return int(word)
     except ValueError as fault:
-        shown = word.decode("latin-1")
-        raise source.error(f"{what} '{shown}' is not a whole number", at=str(line)) from fault
+        spelled = shown(word)
+        raise source.error(f"{what} '{spelled}' is not a whole number", at=str(line)) from fault
+
+
+def shown(word: bytes) -> str:
+    """Return a word as errors show it: of a long one, the beginning."""
+    text = word[:_SHOWN].decode("latin-1")
+    return text if len(word) <= _SHOWN else f"{text}..."
 
 
 def uniform_words(lines: list[bytes], width: int) -> list[bytes] | None:

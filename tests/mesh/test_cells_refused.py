@@ -191,3 +191,49 @@ def test_cells_leave_the_memory_limit_and_the_libraries_as_they_were():
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
 
     assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("suffix", "data"),
+    [
+        (".vtk", ASCII_VTK.replace(b"POINTS 4", b"POINTS " + b"1" * 5000)),
+        (".vtk", ASCII_VTK.replace(b"CELLS 2", b"DIMENSIONS 1 1 " + b"1" * 5000)),
+        (".vtu", b'<VTKFile><Piece NumberOfPoints="%s"/></VTKFile>' % (b"1" * 5000)),
+        (".msh", b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + b"1" * 5000),
+        (".su2", b"NDIME= 3\nNELEM= " + b"1" * 5000),
+    ],
+)
+def test_cells_refuse_counts_too_long_to_be_read(suffix, data):
+    with pytest.raises(MeshError, match="claims a count of 5000 digits"):
+        load_mesh_bytes(data, suffix)
+
+
+ABAQUS = b"""*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 0, 1, 0
+*ELEMENT, TYPE=S3
+1, 1, 2, 3
+"""
+
+
+# The second spelling is one that meshio takes for the first.
+@pytest.mark.parametrize("keyword", ["*INCLUDE", "*IN*CLUDE"])
+def test_cells_follow_no_names_of_other_files(tmp_path, monkeypatch, keyword):
+    (tmp_path / "secret.inp").write_bytes(ABAQUS)
+    path = tmp_path / "part.inp"
+    monkeypatch.chdir(tmp_path)
+    for name in (tmp_path / "secret.inp", "secret.inp"):
+        path.write_bytes(ABAQUS + f"{keyword}, INPUT={name}\n".encode())
+        for load in (lambda: load_mesh(path), lambda: load_mesh_bytes(path.read_bytes(), ".inp")):
+            with pytest.raises(MeshError, match="it names another file, "):
+                load()
+
+
+def test_cells_of_entities_that_multiply_end_soon():
+    entities = [b'<!ENTITY e0 "aaaaaaaaaaaaaaaa">']
+    entities += [b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k in range(1, 12)]
+    data = b"<!DOCTYPE x [%s]><VTKFile>&e11;</VTKFile>" % b"".join(entities)
+
+    with pytest.raises(MeshError, match="meshio cannot read it"):
+        load_mesh_bytes(data, ".vtu")
