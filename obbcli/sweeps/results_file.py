@@ -16,7 +16,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from obbcli.errors import ObbError
-from obbcli.sweeps.blocks import tallied
+from obbcli.results import Status
+from obbcli.sweeps.blocks import ERROR, tallied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -121,6 +122,8 @@ class ResultsFile:
         if not isinstance(row, dict) or row.get("row") != self.row_count:
             fault = f"is not row {self.row_count} of the results"
             raise ObbError(f"{self._path}:{number}", fault, _NEW)
+        if not _is_result(row):
+            raise ObbError(f"{self._path}:{number}", "is no result of a question", _NEW)
         self.row_count += 1
         self.tally[tallied(row)] += 1
 
@@ -139,6 +142,14 @@ def _at(record: object, keys: tuple[str, ...]) -> object:
     for key in keys:
         record = record.get(key) if isinstance(record, dict) else None
     return record
+
+
+def _is_result(row: dict[str, Any]) -> bool:
+    """Return whether a row says how its question ended, or why it was not asked."""
+    if ERROR in row:
+        return True
+    statuses = [status.value for status in Status]
+    return row.get("status") in statuses and isinstance(row.get("approximate"), bool)
 
 
 def _parsed(line: bytes) -> object:

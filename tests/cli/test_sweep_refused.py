@@ -100,6 +100,27 @@ def test_rows_out_of_sequence_are_refused(here: Path, asked, obbtree, change):
     assert (here / "out.jsonl").read_bytes() == b"".join(lines[:20])
 
 
+STRANGE_ROWS = {
+    "no status": {},
+    "no kind": {"status": "separated"},
+    "another status": {"status": "perhaps", "approximate": False},
+    "a list": {"status": ["separated"], "approximate": False},
+}
+
+
+@pytest.mark.parametrize("row", STRANGE_ROWS.values(), ids=STRANGE_ROWS.keys())
+def test_rows_that_are_no_results_are_refused(here: Path, asked, obbtree, row):
+    header = asked.partition(b"\n")[0]
+    content = header + b"\n" + json.dumps({"row": 0, "id": None, **row}).encode() + b"\n"
+    (here / "out.jsonl").write_bytes(content)
+
+    ended = obbtree(*WORDS, "-o", "out.jsonl", "--resume")
+
+    assert ended.code == 3
+    assert "out.jsonl:2: is no result of a question; remove it" in ended.err
+    assert (here / "out.jsonl").read_bytes() == content
+
+
 def test_two_sweeps_do_not_share_their_results(here: Path, asked, obbtree):
     with (here / "whole.jsonl").open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
