@@ -24,7 +24,7 @@ SHELL := /bin/sh
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 .PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits \
-  determinism test-oldest test-newest wheel clean
+  determinism test-oldest test-newest wheel pictures browser clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
@@ -38,6 +38,8 @@ help:
 	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
 	@echo 'make test-oldest  the tests with the oldest packages allowed; test-newest with the newest'
 	@echo 'make wheel     an sdist, a wheel of it, and that it works where there is no compiler'
+	@echo 'make pictures  the pictures of the README, again'
+	@echo 'make browser   the pages that obbtree view writes, in a headless Chromium (CHROMIUM=...)'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'
 	@echo 'PYTHON=python3.12 chooses the interpreter, CXX=clang++ the compiler.'
@@ -155,6 +157,12 @@ wheel: .venv/wheel-tools
 	@mkdir -p $(DIST)/needed
 	@$(PIP) download --only-binary :all: --dest $(DIST)/needed $(DIST)/*.whl
 	$(BIN)/python tests/packaging/bare_install.py $(DIST)/*.whl $(DIST)/needed
+
+pictures: .venv/installed
+	$(BIN)/python $(SAMPLES)/make_pictures.py
+
+browser: .venv/installed
+	$(BIN)/python tests/browser/open_pages.py
 
 clean:
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -39,6 +39,8 @@ def modules_after(code: str, *arguments: str) -> set[str]:
         "from obbcli.cli import main; main(['scene', '--help'])",
         "from obbcli.cli import main; main(['sweep', '--help'])",
         "from obbcli.cli import main; main(['tradeoff', '--help'])",
+        "from obbcli.cli import main; main(['view', '--help'])",
+        "from obbcli.cli import main; main(['view', 'a.stl', '-o', 'a.jpg'])",
         "from obbcli.cli import main; main(['collide', 'a.stl'])",
     ],
 )
@@ -134,6 +136,17 @@ def test_answer_into_a_pipe_imports_neither_rich_nor_other_readers(tmp_path, wor
     loaded = modules_after(code, *(word.format(path) for word in words))
 
     assert not loaded & {"rich", "trimesh", "meshio", "scipy", "tempfile", "fractions"}
+
+
+def test_png_is_painted_without_libraries_for_pictures(tmp_path):
+    (tmp_path / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    code = "import sys; from obbcli.cli import main; assert main(sys.argv[1:]) == 0"
+    words = "view", tmp_path / "one.obj", "--level", "0", "-o", tmp_path / "one.png"
+
+    loaded = modules_after(code, *map(str, words))
+
+    assert (tmp_path / "one.png").is_file()
+    assert not loaded & {"trimesh", "matplotlib", "PIL", "scipy", "meshio", "rich"}
 
 
 @pytest.mark.parametrize("name", obbcli.__all__)

@@ -18,6 +18,7 @@ _GROUPS = {
     },
     "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},
+    "Pictures": {"view": "view"},
     "Files": {"build": "build", "info": "info", "schema": "schema"},
 }
 _COMMANDS = {name: module for group in _GROUPS.values() for name, module in group.items()}

@@ -99,25 +99,39 @@ class Asked(NamedTuple):
         return Setting(sources, motion, question.accuracy, solid)
 
 
-def about_two(exit_code: str, output: str = TO_FILE) -> Decorator:
+def about_two(
+    exit_code: str,
+    output: str = TO_FILE,
+    *,
+    is_b_required: bool = True,
+    takes_dash: bool = True,
+) -> Decorator:
     """Return what gives a command its A and B, and all options of `asked`.
 
     Args:
         exit_code: the help of `--exit-code`.
         output: the help of `-o`.
+        is_b_required: whether there is no command without B, which is an empty word then.
+        takes_dash: whether `-o -` means standard output.
     """
     return gathered(
         "asked",
         Asked,
         (
             click.argument("a", metavar="A", type=PathName()),
-            click.argument("b", metavar="B", type=PathName()),
+            click.argument(
+                "b",
+                metavar="B" if is_b_required else "[B]",
+                type=PathName(),
+                required=is_b_required,
+                callback=lambda _context, _param, name: name or "",
+            ),
             option(QUESTION, "--exit-code", is_flag=True, help=exit_code),
             pose_options,
             motion_options,
             accuracy_options,
             verify_option,
-            common_options(output),
+            common_options(output, takes_dash=takes_dash),
         ),
     )
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from obbcli.cli.boundary import OutputError, UsageError, as_error, report, writing
+from obbcli.cli.boundary import UsageError, as_error, report, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options import Command, common_options, gathered, option
-from obbcli.cli.output import emit, remark
+from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
 from obbcli.cli.types import PathName, Whole, byte_count
 from obbcli.errors import MeshError, ObbError
@@ -162,7 +162,7 @@ def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) ->
     from obbcli.report.build import Built
     from obbcli.tree import ObbTree
 
-    _require_free(target, force=how.force)
+    require_free(target, force=how.force)
     start = time.perf_counter()
     mesh = _mesh(name)
     loaded = time.perf_counter()
@@ -180,14 +180,6 @@ def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) ->
     saved = time.perf_counter()
     seconds = {"load": loaded - start, "build": ready - loaded, "save": saved - ready}
     return Built(tree, str(target), size, seconds)
-
-
-def _require_free(target: Path, *, force: bool) -> None:
-    """Refuse to replace a file unasked, and anything but a file at all."""
-    if target.exists() and not target.is_file():
-        raise OutputError(str(target), "is not a file", "name a file with -o")
-    if target.exists() and not force:
-        raise OutputError(str(target), "exists already", "add --force to replace it")
 
 
 def _mesh(name: str) -> Mesh:

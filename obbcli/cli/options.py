@@ -120,7 +120,7 @@ def _path(_context: click.Context, _param: click.Parameter, name: str | None) ->
 def _place(context: click.Context, param: click.Parameter, name: str | None) -> Path | None:
     """Return where files go, which are not written to standard output."""
     if name == "-":
-        raise click.BadParameter("trees go to files, not to standard output", context, param)
+        raise click.BadParameter("this goes to a file, not to standard output", context, param)
     return None if name is None else Path(name)
 
 

@@ -110,6 +110,18 @@ def write_file(path: Path, text: str) -> None:
         write_whole(path, text.encode("utf-8", errors="backslashreplace"))
 
 
+def require_free(target: Path, *, force: bool) -> None:
+    """Refuse to replace a file unasked, and anything but a file at all.
+
+    Raises:
+        OutputError: it may not be written.
+    """
+    if target.exists() and not target.is_file():
+        raise OutputError(str(target), "is not a file", "name a file with -o")
+    if target.exists() and not force:
+        raise OutputError(str(target), "exists already", "add --force to replace it")
+
+
 def _draw(tables: Iterable[Table], path: Path | None) -> None:
     """Draw tables on standard output or into a file."""
     from obbcli.report.table import draw

@@ -30,8 +30,8 @@ Examples:
 def command(name: str | None, common: CommonOptions) -> int:
     """Print the JSON Schema (draft 2020-12) of a command's documents, or one of them all.
 
-    COMMAND is build, collide, distance, first-contact, info, scene, stability or tradeoff; of a
-    sweep there are three: sweep, the first line of its results, sweep-row, all others, and
+    COMMAND is build, collide, distance, first-contact, info, scene, stability, tradeoff or view; of
+    a sweep there are three: sweep, the first line of its results, sweep-row, all others, and
     sweep-summary, what it prints; error is what any command writes to standard error.
 
     Keys keep their meaning as long as the number at the end of "schema" stays; new ones may come.

@@ -57,6 +57,23 @@ class Tree:
     ) -> None: ...
     def check(self, leaf_size: int, max_depth: int) -> str | None: ...
     def levels(self) -> list[tuple[int, int, float]]: ...
+    def boxes_of_level(
+        self, level: int
+    ) -> tuple[
+        Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), writable=False)],
+        Annotated[NDArray[numpy.float64], dict(shape=(None, 15), writable=False)],
+        int,
+    ]: ...
+    def last_boxes_under(
+        self, slot: int
+    ) -> (
+        tuple[
+            Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), writable=False)],
+            Annotated[NDArray[numpy.float64], dict(shape=(None, 15), writable=False)],
+            int,
+        ]
+        | None
+    ): ...
     @property
     def node_count(self) -> int: ...
     @property

@@ -1,6 +1,7 @@
 // Trees across the border: building, proving, looking at them.
 #include "bindings.hpp"
 
+#include "tree_boxes.hpp"
 #include "tree_build.hpp"
 #include "tree_check.hpp"
 
@@ -82,6 +83,37 @@ std::vector<std::tuple<std::uint64_t, std::uint64_t, double>> levels_of(const Tr
     return levels;
 }
 
+using BoxArrays = std::tuple<Owned<std::uint32_t, -1, 4>, Owned<double, -1, 15>, std::uint32_t>;
+
+// A row each: slot, depth, first triangle, end of triangles; center, axes, half extents.
+BoxArrays box_arrays(const obb::ShownBoxes& found) {
+    std::vector<std::array<std::uint32_t, 4>> refs;
+    std::vector<obb::Obb> boxes;
+    for (const auto& [ref, box] : found.boxes) {
+        refs.push_back({ref.slot, ref.depth, ref.begin, ref.end});
+        boxes.push_back(box);
+    }
+    const std::size_t count = boxes.size();
+    return {owned<Owned<std::uint32_t, -1, 4>>(std::move(refs), {count, 4}),
+            owned<Owned<double, -1, 15>>(std::move(boxes), {count, 15}), found.deepest};
+}
+
+BoxArrays level_of(const Tree& tree, std::uint32_t level) {
+    const obb::ShownBoxes found = [&] {
+        nb::gil_scoped_release release;
+        return obb::boxes_of_level(tree.view, level);
+    }();
+    return box_arrays(found);
+}
+
+std::optional<BoxArrays> under(const Tree& tree, std::uint32_t slot) {
+    const std::optional<obb::ShownBoxes> found = [&] {
+        nb::gil_scoped_release release;
+        return obb::last_boxes_under(tree.view, slot);
+    }();
+    return found ? std::optional(box_arrays(*found)) : std::nullopt;
+}
+
 } // namespace
 
 std::uint64_t Tree::node_count() const {
@@ -111,6 +143,8 @@ void bind_tree(nb::module_& m) {
             },
             "leaf_size"_a, "max_depth"_a)
         .def("levels", &levels_of)
+        .def("boxes_of_level", &level_of, "level"_a)
+        .def("last_boxes_under", &under, "slot"_a)
         .def_prop_ro("node_count", &Tree::node_count)
         .def_rw("possible_node_count", &Tree::possible_node_count);
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 COMMANDS = app.list_commands(click.Context(app))
-UNITS = re.compile(r"mesh units|\brad\b|\bs\b|seconds|bytes|[Ll]evel \w|\bN\b|max-depth")
+UNITS = re.compile(r"mesh units|\brad\b|\bs\b|seconds|bytes|pixels|[Ll]evel \w|\bN\b|max-depth")
 
 
 def options() -> Iterator[Any]:

@@ -33,6 +33,7 @@ _DOCUMENTS = {
     "sweep-row": ("every other line of the results of obbtree sweep", "files"),
     "sweep-summary": ("obbtree sweep --json", "files"),
     "tradeoff": ("obbtree tradeoff --json", "studies"),
+    "view": ("obbtree view --json", "pictures"),
 }
 NAMES = tuple(_DOCUMENTS)
 
