@@ -121,6 +121,9 @@ void advance_in_parts(obb::StaticQuery& query, unsigned threads, std::uint64_t m
     };
     obb::do_parts(parts.size(), threads, advance_part, watch);
     query.join(parts);
+    if (query.pairs().size() > most) { // found before there were parts, and nothing since
+        throw TooManyPairs();
+    }
 }
 
 // Throws TooManyPairs; more than a slice finds does not come on top.

@@ -185,7 +185,21 @@ void ContactQuery::visit(const Entry& entry) {
         }
     } else if (entry.reopened > 0 && entry.next == 0 && is_over(entry)) {
         return;
-    } else if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
+    } else {
+        probe(entry);
+        if (may_tie(entry)) {
+            look_for_tie(entry);
+        } else {
+            part(entry);
+        }
+    }
+}
+
+// Opens the larger box, or the one that can be.
+void ContactQuery::part(const Entry& entry) {
+    const bool open_a = is_open(a_.tree(), entry.a, options_.max_depth_a);
+    const bool open_b = is_open(b_.tree(), entry.b, options_.max_depth_b);
+    if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
         open<true>(entry);
     } else {
         open<false>(entry);

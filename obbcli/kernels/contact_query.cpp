@@ -1,7 +1,6 @@
 #include "contact_query.hpp"
 
 #include "scale.hpp"
-#include "slice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,10 +147,17 @@ void ContactQuery::push(const Entry& entry) {
 bool ContactQuery::advance(std::uint64_t max_pops, double until) {
     const double last = std::ldexp(until, -time_exponent_);
     SliceClock clock;
-    for (; max_pops > 0 && !clock.is_over(); --max_pops) {
+    while (max_pops > 0 && !clock.is_over()) {
+        if (wait_) {
+            if (!end_wait(clock)) {
+                break;
+            }
+            continue;
+        }
         if (has_ended() || is_ready() || lower_bound_ > last) {
             break;
         }
+        --max_pops;
         const Entry entry = queue_.pop();
         ++counts_.pops;
         visit(entry);
@@ -161,8 +167,8 @@ bool ContactQuery::advance(std::uint64_t max_pops, double until) {
 
 // Whether what is known already answers the question.
 bool ContactQuery::has_ended() {
-    if (is_finished_) {
-        return true;
+    if (is_finished_ || wait_) {
+        return is_finished_;
     }
     const double next = queue_.next_time();
     const double stalled = stalled_.empty() ? next : stalled_.front().time;

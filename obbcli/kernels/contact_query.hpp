@@ -4,7 +4,10 @@
 #pragma once
 
 #include "box_steps.hpp"
+#include "contact_plane.hpp"
 #include "moving_tree.hpp"
+#include "seen_lately.hpp"
+#include "slice.hpp"
 #include "time_queue.hpp"
 #include "triangle_advancement.hpp"
 
@@ -101,6 +104,23 @@ class ContactQuery {
         std::uint32_t next = 0;     // of a leaf that is opened, the first triangle not yet pushed
     };
 
+    // A plane that parts what touches at the time of the earliest contact so far, and, in the
+    // query's units from the bodies' pivots, up to where A reaches along it and from where on B.
+    struct Tie {
+        ContactPlane plane;
+        Vec3 normal;
+        double top_of_a, bottom_of_b;
+    };
+    // A pair whose vertices are being compared with a plane.
+    struct Wait {
+        Entry candidate; // the pair, or the bodies as a whole
+        Entry entry;
+        std::size_t plane;
+        std::array<Preparation, 2> preparations;
+        std::uint32_t next_a, next_b;
+        std::array<SeenLately, 2> seen;
+    };
+
     void set_units();
     void set_motion();
     void set_time(double time);
@@ -111,6 +131,17 @@ class ContactQuery {
     [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
     void push(const Entry& entry);
     void visit(const Entry& entry);
+    void part(const Entry& entry);
+    void set_planes(const Entry& entry, const LinearMotion& motion, const Touch& touch);
+    [[nodiscard]] static double top_of(const Triangle& t, Vec3 direction);
+    [[nodiscard]] bool may_tie(const Entry& entry) const;
+    [[nodiscard]] bool are_sides(const Entry& entry, const Tie& tie) const;
+    void look_for_tie(const Entry& entry);
+    [[nodiscard]] bool waits_for(const Entry& candidate, const Entry& entry, std::size_t plane);
+    [[nodiscard]] bool has_limits() const;
+    void probe(const Entry& entry);
+    [[nodiscard]] Entry nearer_half(const Entry& entry, bool opens_a);
+    [[nodiscard]] bool end_wait(SliceClock& clock);
     template <bool kOpensA>
     void open(Entry entry);
     [[nodiscard]] double window(const Entry& entry) const;
@@ -161,6 +192,12 @@ class ContactQuery {
     std::vector<std::uint32_t> free_windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;
+    std::vector<Tie> planes_; // of that
+    std::uint64_t next_probe_ = 0;
+    std::uint64_t tie_pops_ = 0;
+    bool may_all_tie_ = false;    // whether the bodies as a whole were not looked at yet
+    std::uint32_t tie_limit_ = 0; // how many triangles may be looked at for a tie
+    std::optional<Wait> wait_;
     std::vector<Entry> stalled_; // pairs that rounding lets nobody push on, earliest first
     std::uint64_t stall_pops_ = 0;
     std::vector<Contact> found_;              // of `each_pair`, not taken yet

@@ -44,6 +44,7 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
         return;
     }
     exact_ = contact;
+    set_planes(entry, motion, found->touch);
     queue_.erase_after(high); // what cannot touch before is of no interest any more
 }
 

@@ -3,6 +3,7 @@
 #include "distance_query.hpp"
 #include "local_pair.hpp"
 #include "nearest_points.hpp"
+#include "seen_lately.hpp"
 
 #include <algorithm>
 #include <array>
@@ -55,21 +56,6 @@ class Summit {
     double rough_ = -HUGE_VAL;
     Twofold height_{-HUGE_VAL};
     bool is_number_ = true;
-};
-
-// Neighbours share vertices: who was seen lately needs no second look.
-class SeenLately {
-  public:
-    SeenLately() { seen_.fill(-1); }
-    [[nodiscard]] bool add(std::uint32_t vertex) {
-        std::int64_t& place = seen_[vertex % seen_.size()];
-        const bool is_known = place == vertex;
-        place = vertex;
-        return is_known;
-    }
-
-  private:
-    std::array<std::int64_t, 512> seen_;
 };
 
 } // namespace

@@ -20,6 +20,7 @@ import bench_build
 import bench_distance
 import bench_first_contact
 import bench_fits
+import bench_hostile
 import bench_primitives
 import bench_scene
 import bench_static
@@ -41,9 +42,14 @@ BENCHES = {
     "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
     "scene": lambda options: bench_scene.run(options.quick),
     "sweep": lambda options: bench_sweep.run(options.quick),
+    "hostile": lambda options: bench_hostile.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
 }
-TABLES = {"first contact": moving_tables.tables, "fits": bench_fits.tables}
+TABLES = {
+    "first contact": moving_tables.tables,
+    "fits": bench_fits.tables,
+    "hostile": bench_hostile.tables,
+}
 
 
 def main() -> None:
