@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -9,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tree_oracles
+import trimesh
 from opened_files import data_blocks, flip
 from tree_meshes import bumpy_grid, soup
 
 from obbcli import Mesh, ObbError, ObbTree, TreeFileError
 from obbcli.view.boxes import boxes_of_level, last_boxes_under, tree_picture
+from obbcli.view.gltf import glb_bytes
 from obbcli.view.picture import Lines, Surface
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
@@ -181,3 +184,30 @@ def test_colors_of_depths_differ_from_their_neighbours():
 
     assert len(firsts) > 4
     assert all(np.abs(a - b).max() > 60 for a, b in pairwise(firsts))
+
+
+@pytest.mark.parametrize("level", [0, 4, 9])
+def test_glb_holds_the_boxes_of_the_level_around_their_triangles(level):
+    tree, file = made("link"), whole("link")
+    picture = tree_picture(tree, boxes_of_level(tree, level), "")
+    visits = [v for v in tree_oracles.walk(file) if v.slot is not None and v.depth == level]
+    centers = np.ldexp(file.nodes["center"][[v.slot for v in visits]], file.scale_exponent)
+
+    scene = trimesh.load(io.BytesIO(glb_bytes(picture)), file_type="glb", process=False)
+
+    solids = [g for name, g in scene.geometry.items() if "shade" in name]
+    boxes = np.concatenate([solid.vertices.reshape(-1, 8, 3) for solid in solids])
+    nearest = np.linalg.norm(boxes.mean(axis=1)[:, None] - centers, axis=2).argmin(axis=1)
+    assert sorted(nearest.tolist()) == list(range(len(visits)))
+    assert sum(len(solid.faces) for solid in solids) == 12 * len(visits)
+    for corners, number in zip(boxes, nearest.tolist(), strict=True):
+        visit = visits[number]
+        points = file.vertices[file.corners[visit.begin : visit.end]].reshape(-1, 3)
+        sides = corners[[4, 2, 1]] - corners[0]
+        lengths = np.linalg.norm(sides, axis=1)
+        half = np.ldexp(file.nodes["half_extents"][visit.slot].astype(float), file.scale_exponent)
+        np.testing.assert_allclose(lengths, 2 * half, rtol=1e-5, atol=1e-4)
+        axes = tree_oracles.axes_of(file.nodes["rotation"][visit.slot])
+        local = np.abs((points - corners.mean(axis=0)) @ np.array(axes).T)
+        assert (local <= lengths / 2 + 1e-4).all()
+    assert len(scene.geometry["mesh"].faces) == tree.triangle_count
