@@ -6,8 +6,9 @@ Names are loaded when first used (PEP 562): a bare `import obbcli` imports no Nu
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
+# That of `typing`, whose import takes longer than all else here.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.blocks import triangle_pair_blocks

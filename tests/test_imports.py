@@ -68,6 +68,7 @@ NEEDED = {
     "obbcli.cli.inputs",
     "obbcli.cli.options",
     "obbcli.cli.output",
+    "obbcli.cli.process",
     "obbcli.cli.progress",
     "obbcli.cli.question",
     "obbcli.cli.types",
@@ -107,6 +108,7 @@ OTHERS = {
     *("atexit", "bisect", "copy", "dataclasses", "fnmatch", "gc", "glob", "struct", "zlib"),
     *("pathlib", "ntpath", "urllib", "urllib.parse", "ipaddress"),
     "locale",
+    "signal",
     *("importlib.util", "importlib._abc"),
 }
 

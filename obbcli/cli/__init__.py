@@ -8,11 +8,11 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from typing import TYPE_CHECKING
 
-from obbcli.cli.app import app
-from obbcli.cli.boundary import guarded
+from obbcli.cli.process import SIGNALS, check_room, open_closed_streams
 
+# That of `typing`: until `run_process` begins, Ctrl-C finds Python's own handler.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -24,10 +24,13 @@ _OBJECTS_A_COLLECTION = 100_000
 
 def run_process() -> int:
     """Run this process's command line and return its exit code, for a process that ends then."""
+    SIGNALS.install()
+    open_closed_streams()
     gc.set_threshold(_OBJECTS_A_COLLECTION)
     try:
         return main()
     finally:
+        SIGNALS.leave()
         # The end of the process frees all memory: looking for cycles in it would cost a tenth of a
         # short command's time.
         gc.freeze()
@@ -39,6 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: the words after the program's name. None: those of this process.
     """
+    # Imported here, where a signal that comes meanwhile can wait.
+    from obbcli.cli.app import app
+    from obbcli.cli.boundary import guarded
+
     # No command calls BLAS, and starting its threads costs a tenth of NumPy's import.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -51,5 +58,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def run(words: list[str]) -> int:
     """Parse and run one command; return its exit code."""
+    from obbcli.cli.app import app
+
+    check_room()
     with app.make_context(PROGRAM, words) as context:
         return int(app.invoke(context) or 0)

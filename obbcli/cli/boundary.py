@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 
 import click
 
+from obbcli.cli.process import SIGNALS
 from obbcli.errors import ObbError, UnresolvedError
 
 if TYPE_CHECKING:
@@ -54,13 +56,17 @@ def guarded(command: Callable[[], int], words: Sequence[str]) -> int:
         words: the command line: `--json` shapes errors, `--debug` adds a traceback.
     """
     try:
+        SIGNALS.are_heard = True
         code = command()
         with writing_stdout():
             if sys.stdout is not None:
                 sys.stdout.flush()
+        SIGNALS.are_heard = False
     except click.exceptions.Exit as end:
+        SIGNALS.are_heard = False
         return end.exit_code
     except (Exception, KeyboardInterrupt) as fault:  # noqa: BLE001  # the boundary
+        SIGNALS.are_heard = False
         trace = None
         if is_among("--debug", words):
             # Imported where faults are rare, like all that only faults need: start-up counts.
@@ -96,17 +102,26 @@ def report(error: ObbError, *, as_json: bool, trace: str | None = None) -> ExitC
         note(to_json(error_document(error, int(code), trace)).rstrip())
     else:
         told = str(error).removeprefix(": ")  # what has no place
-        note(f"{trace or ''}error: {told}")
+        note(f"{trace or ''}error: {_in_one_line(told)}")
     return code
 
 
+def _in_one_line(text: str) -> str:
+    """Return a text with the line ends and control characters in names of files escaped."""
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
+
+
 def note(text: str) -> None:
-    """Write one line to stderr; a reader that has gone away is no fault."""
+    """Write one line to stderr; that nobody can read it is no fault."""
     if sys.stderr is None:
         return
     try:
         print(text, file=sys.stderr, flush=True)  # noqa: T201  # the one place that does
-    except BrokenPipeError:
+    except OSError:
+        # Its reader has gone away, or its disk is full: there is nowhere to tell it.
         _silence(sys.stderr)
 
 
@@ -144,6 +159,19 @@ def _usage_error(fault: click.ClickException) -> UsageError:
     path = context.command_path if context is not None else "obbtree"
     message = fault.format_message().replace("\n", " ").rstrip(".")
     return UsageError(path, message, f"see '{path} --help'")
+
+
+def stdout() -> TextIO:
+    """Return standard output; names that its encoding cannot hold are escaped.
+
+    Raises:
+        OutputError: it is closed.
+    """
+    if sys.stdout is None:
+        raise OutputError("standard output", "is closed", "use -o FILE")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+    return sys.stdout
 
 
 @contextmanager

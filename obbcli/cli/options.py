@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
-from obbcli.cli.boundary import writing_stdout
+from obbcli.cli.boundary import stdout, writing_stdout
 from obbcli.cli.types import Finite, PathName
 
 if TYPE_CHECKING:
@@ -44,9 +44,17 @@ class GuardedHelp(click.Command):
     """Prints help and version, which happens while parsing, inside the guard of standard output."""
 
     def make_context(self, *args: Any, **extra: Any) -> click.Context:
-        """Parse; a pipe closed while help was printed ends the command."""
+        """Parse; a pipe closed while help was printed ends the command.
+
+        Raises:
+            OutputError: help is asked for, and standard output is closed or its disk full.
+        """
         with writing_stdout():
-            return super().make_context(*args, **extra)
+            try:
+                return super().make_context(*args, **extra)
+            except click.exceptions.Exit:
+                stdout()  # click prints nothing where there is none
+                raise
         raise click.exceptions.Exit(0)
 
 

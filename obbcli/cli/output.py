@@ -3,17 +3,9 @@
 from __future__ import annotations
 
 import io
-import sys
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
-from obbcli.cli.boundary import (
-    CancelledError,
-    OutputError,
-    note,
-    report,
-    writing,
-    writing_stdout,
-)
+from obbcli.cli.boundary import CancelledError, note, report, stdout, writing, writing_stdout
 from obbcli.files import write_whole
 
 if TYPE_CHECKING:
@@ -81,7 +73,7 @@ def write_stdout(text: str) -> None:
         OutputError: it is closed, or its disk is full.
     """
     with writing_stdout():
-        _stdout().write(text)
+        stdout().write(text)
 
 
 def write_pieces(pieces: Iterable[str]) -> None:
@@ -93,8 +85,8 @@ def write_pieces(pieces: Iterable[str]) -> None:
     for piece in pieces:
         is_read = False
         with writing_stdout():
-            _stdout().write(piece)
-            _stdout().flush()
+            stdout().write(piece)
+            stdout().flush()
             is_read = True
         if not is_read:
             return
@@ -132,13 +124,4 @@ def _draw(tables: Iterable[Table], path: Path | None) -> None:
         write_file(path, text.getvalue())
         return
     with writing_stdout():
-        draw(tables, _stdout())
-
-
-def _stdout() -> TextIO:
-    """Return standard output; names that its encoding cannot hold are escaped."""
-    if sys.stdout is None:
-        raise OutputError("standard output", "is closed", "use -o FILE")
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
-    return sys.stdout
+        draw(tables, stdout())

@@ -7,7 +7,8 @@ import pytest
 
 import obbcli.cli
 from obbcli import MeshError, MotionError, ObbError, SceneError, TreeFileError, UnresolvedError
-from obbcli.cli import app, main
+from obbcli.cli import main
+from obbcli.cli.app import app
 from obbcli.cli.boundary import ExitCode, OutputError, UsageError, guarded
 
 COMMANDS = ("collide", "first-contact", "build", "info")
@@ -53,6 +54,12 @@ def test_line_names_place_fault_and_remedy(capsys):
     assert capsys.readouterr().err == "error: gear.obj:12: uses vertex 9 of 8; count from 1\n"
 
 
+def test_names_that_would_break_the_line_are_escaped(capsys):
+    guarded(lambda: fail(MeshError("two\nlines\x1b[2J.stl", "is no mesh: é")), [])
+
+    assert capsys.readouterr().err == "error: two\\nlines\\x1b[2J.stl: is no mesh: é\n"
+
+
 def test_debug_adds_the_traceback(capsys):
     code = guarded(lambda: fail(ZeroDivisionError("oh")), ["--debug"])
 
@@ -92,6 +99,21 @@ def test_closed_standard_output_is_an_output_fault(here, obbtree, monkeypatch):
     assert (ended.code, saved.code) == (5, 0)
     assert "use -o FILE" in ended.err
     assert (here / "answer.txt").read_text() == "separated\n"
+
+
+def test_help_to_nowhere_is_an_output_fault(obbtree, monkeypatch):
+    monkeypatch.setattr("sys.stdout", None)
+
+    for words in ((), ("--help",), ("--version",), ("info", "--help")):
+        assert (ended := obbtree(*words)).code == 5
+        assert ended.err == "error: standard output: is closed; use -o FILE\n"
+
+
+def test_error_that_nobody_can_read_keeps_its_exit_code(here, obbtree, monkeypatch):
+    with open("/dev/full", "w", encoding="utf-8") as full:  # noqa: PTH123  # a device
+        monkeypatch.setattr("sys.stderr", full)
+
+        assert obbtree("info", "gone.stl").code == 3
 
 
 def test_answer_to_a_place_that_cannot_be_written_is_an_output_fault(here, obbtree):

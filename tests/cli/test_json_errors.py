@@ -11,7 +11,7 @@ from schemas import require_valid
 
 import obbcli
 from obbcli import MeshError
-from obbcli.cli import app
+from obbcli.cli.app import app
 from obbcli.cli.boundary import guarded
 
 if TYPE_CHECKING:
