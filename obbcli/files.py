@@ -9,6 +9,13 @@ import os
 import stat
 from contextlib import suppress
 from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+TEMPORARY = ".obbtree-"
+"""How names of files begin that are not yet whole; `kill -9` can leave one behind."""
 
 
 def write_whole(path: str | os.PathLike[str], *parts: bytes) -> None:
@@ -31,30 +38,54 @@ def write_whole(path: str | os.PathLike[str], *parts: bytes) -> None:
         raise OSError(fault.errno, fault.strerror, os.fspath(path)) from fault
 
 
+def stamp_of(path: str | os.PathLike[str]) -> tuple[int, ...] | None:
+    """Return what tells whether a file is still what it was; None where there is none."""
+    try:
+        found = Path(path).stat()
+    except (OSError, ValueError):
+        return None  # whoever opens it says why
+    return (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns)
+
+
+def is_device(stream: IO[str] | IO[bytes]) -> bool:
+    """Return whether a stream is a terminal or another device: such never end, or hold nothing."""
+    if stream.isatty():
+        return True
+    try:
+        kind = os.fstat(stream.fileno()).st_mode
+    except OSError:
+        return False  # no file of the system's at all
+    return stat.S_ISCHR(kind) or stat.S_ISBLK(kind)
+
+
 def _write(target: Path, parts: tuple[bytes, ...]) -> None:
     mode = _mode_of(target)
     if mode is not None and not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         with target.open("wb") as file:
             file.writelines(parts)
         return
-    # Costs as much to import as all else here.
-    import tempfile
-
     # In the same directory, since only there is a rename atomic. Its name is its own, as one made
-    # from the target's could be longer than names may be.
-    handle, name = tempfile.mkstemp(prefix=".obbtree-", dir=target.parent)
-    temporary = Path(name)
+    # from the target's could be longer than names may be. It is known before the file is there, so
+    # that no moment is left in which an interruption would forget it.
+    temporary = target.parent / f"{TEMPORARY}{os.urandom(8).hex()}"
     try:
-        with os.fdopen(handle, "wb") as file:
+        # What replaces a private file is private while it is written.
+        with open(temporary, "xb", opener=_opener(0o666 if mode is None else 0o600)) as file:
             file.writelines(parts)
             file.flush()
             os.fsync(file.fileno())
-        temporary.chmod(0o666 & ~_umask() if mode is None else stat.S_IMODE(mode))
+        if mode is not None:
+            temporary.chmod(stat.S_IMODE(mode))
         temporary.replace(target)
     except BaseException:
-        with suppress(FileNotFoundError):
+        # What went wrong first is what is told.
+        with suppress(OSError):
             temporary.unlink()
         raise
+
+
+def _opener(mode: int) -> Callable[[str, int], int]:
+    return lambda name, flags: os.open(name, flags, mode)
 
 
 def _mode_of(target: Path) -> int | None:
@@ -63,10 +94,3 @@ def _mode_of(target: Path) -> int | None:
         return target.stat().st_mode
     except FileNotFoundError:
         return None
-
-
-def _umask() -> int:
-    """Return the process's file mode mask, which can only be read by setting it."""
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

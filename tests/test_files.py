@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from obbcli.files import write_whole
+from obbcli.files import TEMPORARY, stamp_of, write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,6 +83,60 @@ def test_pipe_is_written_to_and_stays_a_pipe(tmp_path: Path) -> None:
     assert stat.S_ISFIFO(path.stat().st_mode)
     assert read.result() == b"through"
     assert [entry.name for entry in tmp_path.iterdir()] == ["pipe"]
+
+
+@pytest.mark.parametrize("exists", [False, True])
+def test_what_is_not_yet_whole_is_known_by_its_name_and_private_where_its_target_is(
+    exists: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "file"
+    if exists:
+        path.touch(mode=0o600)
+    seen = []
+
+    def look(_: int) -> None:
+        seen.extend((entry.name, entry.stat().st_mode) for entry in tmp_path.iterdir())
+
+    monkeypatch.setattr(os, "fsync", look)
+    write_whole(path, b"new")
+
+    (mode,) = [mode for name, mode in seen if name.startswith(TEMPORARY)]
+    assert stat.S_IMODE(mode) & 0o077 == (
+        0 if exists else stat.S_IMODE(path.stat().st_mode) & 0o077
+    )
+
+
+def test_interruption_right_after_the_file_was_made_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = os.open
+
+    def interrupted(*arguments: object) -> int:
+        made(*arguments)  # type: ignore[arg-type]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "open", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(tmp_path / "file", b"new")
+
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_stamp_tells_files_apart(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    assert stamp_of(path) is None
+    path.write_bytes(b"one")
+    os.utime(path, ns=(0, 5))
+    first = stamp_of(path)
+    assert stamp_of(path) == first
+
+    os.utime(path, ns=(0, 6))
+    assert stamp_of(path) != first
+    os.utime(path, ns=(0, 5))
+    path.rename(tmp_path / "kept")
+    path.write_bytes(b"one")
+    os.utime(path, ns=(0, 5))
+    assert stamp_of(path) != first
 
 
 @pytest.mark.parametrize("place", ["missing/file", "folder", "file/below"])

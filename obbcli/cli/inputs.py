@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.progress import bar
 from obbcli.errors import MeshError
+from obbcli.files import is_device, stamp_of
 from obbcli.report.record import Source, file_sha256
 
 if TYPE_CHECKING:
@@ -30,22 +31,25 @@ class Input(NamedTuple):
         tree: its tree.
         sha256: of the bytes read, where they are known already.
         seconds: s of wall time that reading and building took.
+        stamp: of the file before it was read; None where it is no file.
     """
 
     name: str
     tree: ObbTree
     sha256: str | None
     seconds: float
+    stamp: tuple[int, ...] | None = None
 
     def source(self, *, with_sha256: bool) -> Source:
         """Return what a record says of it.
 
         Raises:
+            ObbError: the file is not what it was when it was read.
             OSError: the file is gone.
         """
         digest = self.sha256
         if with_sha256 and digest is None:
-            digest = file_sha256(self.name)
+            digest = file_sha256(self.name, self.stamp)
         return Source(self.name, digest, self.tree.triangle_count)
 
 
@@ -95,11 +99,12 @@ def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
     from obbcli.tree import ObbTree
 
     start = time.perf_counter()
+    stamp = stamp_of(name)
     shape, sha256 = read_shape(name, verify=verify, hashed=hashed)
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
             shape = ObbTree.build(shape, progress=move)
-    return Input(name, shape, sha256, time.perf_counter() - start)
+    return Input(name, shape, sha256, time.perf_counter() - start, stamp)
 
 
 def read_shape(
@@ -117,7 +122,7 @@ def read_shape(
         TreeFileError: the tree file is damaged.
         OSError: the file cannot be read.
     """
-    from obbcli.mesh import check_file, load_mesh
+    from obbcli.mesh import check_file, load_mesh, read_stream
     from obbcli.tree import ObbTree
 
     if name == STDIN:
@@ -125,7 +130,9 @@ def read_shape(
     path = Path(name)
     check_file(path)
     if path.is_fifo():
-        return _from_bytes(path.read_bytes(), path.suffix, name, verify=verify, hashed=hashed)
+        with path.open("rb") as pipe:
+            data = read_stream(pipe, name)
+        return _from_bytes(data, path.suffix, name, verify=verify, hashed=hashed)
     if _is_tree(path):
         return ObbTree.open(name, verify=verify), None
     mesh = load_mesh(name, hashed=hashed)
@@ -166,8 +173,11 @@ def read_stdin() -> bytes:
     """Return all of standard input.
 
     Raises:
-        MeshError: it is a terminal or closed.
+        MeshError: it is a terminal, another device or closed, or brings too much.
+        OSError: it cannot be read.
     """
-    if sys.stdin is None or sys.stdin.isatty():
+    from obbcli.mesh import read_stream
+
+    if sys.stdin is None or is_device(sys.stdin):
         raise MeshError(_STDIN_NAME, "is no file or pipe", "pipe a mesh into it, or name a file")
-    return sys.stdin.buffer.read()
+    return read_stream(sys.stdin.buffer, _STDIN_NAME)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from obbcli.scene import Scene
     from obbcli.scene.course import Course
     from obbcli.scene.results import SceneContact
+
+    Stamps: TypeAlias = dict[str, tuple[int, ...] | None]
 
 _STDIN_NAME = "<stdin>"
 
@@ -94,14 +96,15 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     """
     wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
     _refuse_contradictions(wanted)
-    scene, source = _read(file, accuracy, flags["duration"], verify=not flags["no_verify"])
+    scene, source, stamps = _read(file, accuracy, flags["duration"], verify=not flags["no_verify"])
     if wanted.all_contacts and scene.accuracy.method == "sampled":
         fault = "lists contacts of triangles, and sampling finds the first contact alone"
         raise UsageError("--all-contacts", fault, "ask for --method certified")
     keep_inputs(common.output, (file, *(str(body.body.shape) for body in scene.bodies)))
     found = _ask(scene, wanted)
     answer = _run(found, wanted, progress=common.shows_progress)
-    record = _record(source, scene, found, answer, hashed=common.json)
+    # Hashes cost time, and only a document shows them.
+    record = _record(source, scene, found, answer, stamps if common.json else None)
     _show(record, common, explains=flags["explain"])
     return _exit_code(record["result"], asked=flags["exit_code"])
 
@@ -117,8 +120,9 @@ def _refuse_contradictions(wanted: _Wanted) -> None:
 
 def _read(
     file: str, options: AccuracyOptions, duration: float | None, *, verify: bool
-) -> tuple[Scene, Source]:
-    """Return the scene as asked about, and its file."""
+) -> tuple[Scene, Source, Stamps]:
+    """Return the scene as asked about, its file, and what the files of its bodies are by now."""
+    from obbcli.files import stamp_of
     from obbcli.mesh import digest_of
     from obbcli.report.record import Source
     from obbcli.scene import Scene
@@ -128,6 +132,8 @@ def _read(
     data = read_stdin() if file == STDIN else read_bytes(Path(file), name)
     folder = Path() if file == STDIN else Path(file).parent
     parts = parse_scene(data, name, folder, is_json=name.lower().endswith(".json"))
+    paths = {str(body.body.shape) for body in parts.bodies}
+    stamps = {path: stamp_of(path) for path in paths}
     scene = Scene(
         parts.bodies,
         parts.ignore,
@@ -135,7 +141,7 @@ def _read(
         _accuracy(parts.accuracy, options),
         verify=verify,
     )
-    return scene, Source(file, digest_of(data)(), None)
+    return scene, Source(file, digest_of(data)(), None), stamps
 
 
 def _accuracy(accuracy: Accuracy, options: AccuracyOptions) -> Accuracy:
@@ -205,22 +211,25 @@ def _record(
     scene: Scene,
     found: Course,
     answer: Answer,
-    *,
-    hashed: bool,
+    stamps: Stamps | None,
 ) -> Record:
-    """Return the record of an answer."""
+    """Return the record of an answer, with hashes where there are stamps to hold them against.
+
+    Raises:
+        ObbError: a body's file is not what it was when the scene was read.
+    """
     from obbcli.report.record import Source, file_sha256
     from obbcli.report.scene import mesh_paths, scene_record
 
     asked = found.asked
     stats = zip(asked.bodies, answer.stats.bodies, strict=True)
     triangles = {str(body.body.shape): part.triangle_count for body, part in stats}
-    # Hashes cost time, and only a document shows them.
-    meshes = [
-        Source(path, file_sha256(path) if hashed else None, triangles[path])
-        for path in mesh_paths(asked)
-    ]
-    return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=hashed)
+    meshes = []
+    for path in mesh_paths(asked):
+        digest = None if stamps is None else file_sha256(path, stamps[path])
+        meshes.append(Source(path, digest, triangles[path]))
+    is_hashed = stamps is not None
+    return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
 
 
 def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:

@@ -183,6 +183,7 @@ def _read(
     asked: _Asked,
 ) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
     """Return A and B, and what a record says of them."""
+    from obbcli.files import stamp_of
     from obbcli.mesh import Mesh
     from obbcli.report.record import Source, file_sha256
 
@@ -192,10 +193,11 @@ def _read(
     for name in (asked.a, asked.b):
         if name in found:
             continue
+        stamp = stamp_of(name)
         shape, digest = read_shape(name, verify=not asked.no_verify)
         count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
         if digest is None and asked.common.json:
-            digest = file_sha256(name)
+            digest = file_sha256(name, stamp)
         found[name] = shape, Source(name, digest, count)
     (a, source_a), (b, source_b) = found[asked.a], found[asked.b]
     return (a, b), (source_a, source_b)

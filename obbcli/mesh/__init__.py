@@ -7,6 +7,14 @@ from __future__ import annotations
 
 from obbcli.mesh.load import known_suffixes, load_mesh, load_mesh_bytes
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import check_file, digest_of
+from obbcli.mesh.source import check_file, digest_of, read_stream
 
-__all__ = ["Mesh", "check_file", "digest_of", "known_suffixes", "load_mesh", "load_mesh_bytes"]
+__all__ = [
+    "Mesh",
+    "check_file",
+    "digest_of",
+    "known_suffixes",
+    "load_mesh",
+    "load_mesh_bytes",
+    "read_stream",
+]

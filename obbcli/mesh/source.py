@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import stat
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 from obbcli.errors import MeshError
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 #: Below this many bytes a thread costs more than the hash.
 _THREAD_FROM = 1 << 20
+#: Bytes read at a time from a stream, and which share of all memory it may fill.
+_CHUNK = 1 << 20
+_SHARE = 4
 
 
 class Source(NamedTuple):
@@ -67,8 +71,35 @@ def read_source(path: Path) -> Source:
     """
     check_file(path)
     with _naming(path):
-        data = path.read_bytes()
+        data = _drained(path) if path.is_fifo() else path.read_bytes()
     return checked_source(Source(str(path), path.name, data, path))
+
+
+def _drained(pipe: Path) -> bytes:
+    with pipe.open("rb") as stream:
+        return read_stream(stream, str(pipe))
+
+
+def read_stream(stream: BinaryIO, place: str) -> bytes:
+    """Return all that a pipe or standard input brings.
+
+    Args:
+        stream: what is read.
+        place: what errors call it.
+
+    Raises:
+        MeshError: it brings more than a quarter of this machine's memory; some never end.
+        OSError: it cannot be read.
+    """
+    most = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // _SHARE
+    parts = []
+    while part := stream.read(_CHUNK):
+        parts.append(part)
+        most -= len(part)
+        if most < 0:
+            fault = "goes on after a quarter of this machine's memory"
+            raise MeshError(place, fault, "put it into a file, or build its tree where it fits")
+    return b"".join(parts)
 
 
 @contextmanager
@@ -115,7 +146,11 @@ def digest_of(data: bytes) -> Callable[[], str]:
         return hashlib.sha256(data).hexdigest
     digest = hashlib.sha256()
     thread = threading.Thread(target=digest.update, args=(data,), name="sha256", daemon=True)
-    thread.start()
+    try:
+        thread.start()
+    except RuntimeError:  # the system gives no more threads
+        digest.update(data)
+        return digest.hexdigest
 
     def wait() -> str:
         thread.join()

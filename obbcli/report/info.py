@@ -21,15 +21,13 @@ _CHANGES = {
 }
 
 
-def info_record(
-    path: str, shape: Mesh | ObbTree, sha256: str | None, *, is_checked: bool
-) -> Record:
+def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bool) -> Record:
     """Return the record of a file.
 
     Args:
         path: as the user wrote it; `-` for standard input.
         shape: what it holds.
-        sha256: of its bytes, where it is known already.
+        sha256: of its bytes, in hexadecimal.
         is_checked: whether its tree was proven.
 
     Raises:
@@ -38,7 +36,7 @@ def info_record(
     """
     is_mesh = isinstance(shape, Mesh)
     mesh = shape if isinstance(shape, Mesh) else shape.mesh
-    source = Source(path, sha256 or file_sha256(path), len(mesh.triangles))
+    source = Source(path, sha256, len(mesh.triangles))
     result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
     result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
     result["check"] = "passed" if is_checked else None

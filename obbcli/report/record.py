@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from obbcli import __version__
+from obbcli.errors import ObbError
+from obbcli.files import stamp_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
     from obbcli.body import Body
-    from obbcli.errors import ObbError
     from obbcli.motion import Pose
     from obbcli.results import QueryStats
 
@@ -153,10 +154,15 @@ def finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def file_sha256(path: str | Path) -> str:
+def file_sha256(path: str | Path, as_of: tuple[int, ...] | None = None) -> str:
     """Return the SHA-256 of a file's bytes, in hexadecimal.
 
+    Args:
+        path: the file.
+        as_of: `stamp_of` it, taken before it was read; None where that does not matter.
+
     Raises:
+        ObbError: it is no longer the file that was read.
         OSError: the file cannot be read.
     """
     import hashlib
@@ -165,4 +171,6 @@ def file_sha256(path: str | Path) -> str:
     with Path(path).open("rb") as file:
         while chunk := file.read(_CHUNK):
             digest.update(chunk)
+    if as_of is not None and stamp_of(path) != as_of:
+        raise ObbError(str(path), "changed while it was read", "ask again")
     return digest.hexdigest()

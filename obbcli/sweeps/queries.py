@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Literal, TypeAlias
 
 from obbcli.errors import ObbError
+from obbcli.files import is_device
 from obbcli.sweeps.csv_rows import rows_of_csv
 from obbcli.sweeps.jsonl_rows import rows_of_jsonl
 
@@ -94,20 +95,22 @@ def opened(name: str) -> Iterator[Queries]:
     """Open a file of questions; `-` is standard input, which is kept on disk meanwhile.
 
     Raises:
-        ObbError: it is a folder, or standard input is a terminal or closed.
+        ObbError: it is a folder or device, or standard input is a terminal or closed.
         OSError: it cannot be read.
     """
     if name != _STDIN:
         if Path(name).is_dir():
             raise ObbError(name, "is a folder", "name a file of questions")
         with Path(name).open("rb") as file:
+            if is_device(file):
+                raise ObbError(name, "is a device", "name a file of questions")
             if file.seekable():
                 yield Queries(name, file)
                 return
             with _spooled(file) as copy:
                 yield Queries(name, copy)
                 return
-    if sys.stdin is None or sys.stdin.isatty():
+    if sys.stdin is None or is_device(sys.stdin):
         raise ObbError("<stdin>", "is no file or pipe", "pipe questions into it, or name a file")
     with _spooled(sys.stdin.buffer) as copy:
         yield Queries(name, copy)

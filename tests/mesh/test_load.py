@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import struct
 import subprocess
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 
 from obbcli.errors import MeshError
-from obbcli.mesh import known_suffixes, load_mesh, load_mesh_bytes
+from obbcli.mesh import known_suffixes, load_mesh, load_mesh_bytes, read_stream
 
 OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
@@ -34,6 +35,30 @@ def test_load_mesh_names_the_file_and_hashes_the_bytes_it_read(tmp_path):
 
     assert mesh.source == "part.obj"
     assert mesh.sha256 == hashlib.sha256(OBJ).hexdigest()
+
+
+def test_stream_that_does_not_end_is_refused(monkeypatch):
+    room = 3 << 20
+    monkeypatch.setattr("os.sysconf", {"SC_PHYS_PAGES": room, "SC_PAGE_SIZE": 4}.get)
+
+    assert len(read_stream(io.BytesIO(bytes(room)), "<stdin>")) == room
+    with (
+        open("/dev/zero", "rb") as endless,  # noqa: PTH123  # a device
+        pytest.raises(MeshError, match="<stdin>: goes on after a quarter of this machine's memory"),
+    ):
+        read_stream(endless, "<stdin>")
+
+
+def test_load_mesh_hashes_where_no_thread_is_to_be_had(tmp_path, monkeypatch):
+    data = b"\0" * 80 + struct.pack("<I", 30000) + bytes(50 * 30000)
+    (tmp_path / "flat.stl").write_bytes(data)
+
+    def refuse(_thread):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", refuse)
+
+    assert load_mesh(tmp_path / "flat.stl").sha256 == hashlib.sha256(data).hexdigest()
 
 
 def test_load_mesh_hashes_large_files_right(tmp_path):

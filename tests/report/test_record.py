@@ -11,7 +11,8 @@ import re
 import numpy as np
 import pytest
 
-from obbcli import Body, Mesh, MeshError, Motion, Pose, __version__
+from obbcli import Body, Mesh, MeshError, Motion, ObbError, Pose, __version__
+from obbcli.files import stamp_of
 from obbcli.report.document import to_json
 from obbcli.report.record import document, error_document, file_sha256, finite, motion_part
 from obbcli.report.table import Table, count, draw, length, seconds, size
@@ -108,6 +109,18 @@ def test_file_sha256_is_that_of_the_bytes(tmp_path):
     (tmp_path / "data").write_bytes(data)
 
     assert file_sha256(tmp_path / "data") == hashlib.sha256(data).hexdigest()
+
+
+def test_file_sha256_is_not_that_of_another_file_than_was_read(tmp_path):
+    path = tmp_path / "data"
+    path.write_bytes(b"one")
+    read = stamp_of(path)
+    assert file_sha256(path, read) == hashlib.sha256(b"one").hexdigest()
+    (tmp_path / "other").write_bytes(b"two")
+    (tmp_path / "other").replace(path)
+
+    with pytest.raises(ObbError, match="changed while it was read"):
+        file_sha256(path, read)
 
 
 def drawn(*tables: Table) -> str:
