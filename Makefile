@@ -24,7 +24,7 @@ SHELL := /bin/sh
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 .PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits \
-  determinism test-oldest test-newest wheel pictures browser clean
+  determinism test-oldest test-newest faults wheel pictures browser clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
@@ -35,6 +35,7 @@ help:
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
 	@echo 'make same-bits that kernels say the same with wide registers and without'
+	@echo 'make faults    full disks, closed streams, 1,000 interrupts: how commands end (FAULT_ARGS="--only stdin")'
 	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
 	@echo 'make test-oldest  the tests with the oldest packages allowed; test-newest with the newest'
 	@echo 'make wheel     an sdist, a wheel of it, and that it works where there is no compiler'
@@ -98,6 +99,10 @@ stub: .venv/installed
 
 bench: .venv/bench-tools .venv/installed
 	$(BIN)/python tests/bench/run.py $(BENCH_ARGS)
+
+# Twenty minutes or so; the tests run the quick part of it.
+faults: .venv/installed
+	$(BIN)/python tests/faults/run.py $(FAULT_ARGS)
 
 # The address sanitizer wants to be the first library loaded, and the C++ library before the first exception;
 # what asks for more memory than there is gets none, as without it.
