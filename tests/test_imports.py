@@ -108,6 +108,7 @@ OTHERS = {
     *("atexit", "bisect", "copy", "dataclasses", "fnmatch", "gc", "glob", "struct", "zlib"),
     *("pathlib", "ntpath", "urllib", "urllib.parse", "ipaddress"),
     "locale",
+    "resource",
     "signal",
     *("importlib.util", "importlib._abc"),
 }

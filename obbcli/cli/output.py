@@ -5,7 +5,15 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-from obbcli.cli.boundary import CancelledError, note, report, stdout, writing, writing_stdout
+from obbcli.cli.boundary import (
+    CancelledError,
+    OutputError,
+    note,
+    report,
+    stdout,
+    writing,
+    writing_stdout,
+)
 from obbcli.files import write_whole
 
 if TYPE_CHECKING:
