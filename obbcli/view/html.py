@@ -63,17 +63,22 @@ def _centered(picture: Picture) -> Picture:
     low, high = np.ldexp(low, -exponent), np.ldexp(high, -exponent)
     middle, radius = (low + high) / 2, math.hypot(*(high - low).tolist()) / 2
 
-    def moved(world: NDArray[np.float64]) -> NDArray[np.float64]:
-        inside = (np.ldexp(world, -exponent) - middle) / (radius or 1.0)
+    def moved(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        inside = (np.ldexp(points, -exponent) - middle) / (radius or 1.0)
         turned: NDArray[np.float64] = inside @ _Y_UP.T
         return turned
 
     parts: list[Surface | Lines] = []
     for part in picture.parts:
         if isinstance(part, Lines):
-            parts.append(replace(part, vertices=moved(part.world())))
-        else:
-            parts.append(replace(part, vertices=moved(part.world()), pose=Pose()))
+            parts.append(replace(part, vertices=moved(part.vertices)))
+            continue
+        # Of one body the same numbers, wherever it is: the file holds them once.
+        own = part.vertices.min(axis=0) / 2 + part.vertices.max(axis=0) / 2
+        local = np.ldexp(part.vertices - own, -exponent) / (radius or 1.0)
+        place = moved(part.pose.apply(own[None]))[0]
+        pose = Pose.carried(_Y_UP @ part.pose.rotation, place)
+        parts.append(replace(part, vertices=local, pose=pose))
     return replace(picture, parts=parts)
 
 

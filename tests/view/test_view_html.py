@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import io
+import json
 import re
+import struct
 from html.parser import HTMLParser
 
 import numpy as np
@@ -92,10 +94,25 @@ def test_scene_is_in_a_ball_whatever_its_units(scale):
     bounds = scene.bounds
     assert {"A at t = 0.5 s", "B at t = 0.5 s", "contact point"} <= set(scene.geometry)
     assert np.linalg.norm(bounds[1] - bounds[0]) == pytest.approx(2.0, rel=0.1)
-    # z of the mesh is up on the page, where that is y: B comes from above.
-    assert (
-        scene.geometry["B at t = 0 s"].bounds[1][1] > scene.geometry["A at t = 0.5 s"].bounds[1][1]
-    )
+    # The world reaches from the origin to (1, 1, 2.5); z of the mesh is up on the page: its y.
+    for name, height in (("A at t = 0.5 s", 0), ("B at t = 0 s", 1.5), ("B at t = 0.5 s", 1)):
+        transform, geometry = scene.graph[name]
+        found = trimesh.transform_points(scene.geometry[geometry].vertices, transform)
+        x, y, z = (np.array(TETRAHEDRON[0]) + np.array((-0.5, -0.5, height - 1.25))).T
+        expected = np.stack([x, z, -y], axis=1) / (np.sqrt(8.25) / 2)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
+
+
+def test_body_and_its_ghosts_are_held_once():
+    text = page_of()
+    data = base64.b64decode(max(re.findall(r'"([A-Za-z0-9+/=]{400,})"', text), key=len))
+    header = json.loads(data[20 : 20 + struct.unpack("<I", data[12:16])[0]])
+
+    places = {
+        mesh["name"]: mesh["primitives"][0]["attributes"]["POSITION"] for mesh in header["meshes"]
+    }
+
+    assert len({number for name, number in places.items() if name.startswith("B at")}) == 1
 
 
 @pytest.mark.parametrize("direction", [(0, 0, 1), (0, 0, -1), (1, -2, 0.5)])
