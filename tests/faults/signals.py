@@ -39,6 +39,7 @@ COMMANDS = (
     Command(("scene", "cell.toml", "--json", "-o", "old.json"), ("old.json",)),
     Command(("stability", "cube.stl", "apart.obj", "--vel", "1", "0", "0")),
     Command(("tradeoff", "cube.stl", "apart.obj", "--vel", "1", "0", "0", "--budget", "0.5")),
+    Command(("view", "cube.stl", "-o", "new.glb"), ("new.glb",)),
     Command(("info", "old.obbt", "--check")),
     Command(("schema",)),
 )

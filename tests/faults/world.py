@@ -191,6 +191,10 @@ def _faults_of(path: Path) -> list[str]:
             ObbTree.open(path).check()
         elif path.suffix == ".jsonl":
             _check_rows(path.read_bytes())
+        elif path.suffix == ".glb":
+            data = path.read_bytes()
+            assert data[:4] == b"glTF"
+            assert int.from_bytes(data[8:12], "little") == len(data), "it is cut short"
         elif path.suffix == ".svg":
             assert path.read_bytes().rstrip().endswith(b"</svg>")
         else:
