@@ -41,12 +41,14 @@ class Outcome:
     Attributes:
         status: in a word or two.
         seconds: of the question, meshes made before and trees on the way.
+        processor: seconds that it took of processors, whoever else was busy.
         peak: bytes of the process, at most.
         before: bytes of it before the question, at most.
     """
 
     status: str
     seconds: float
+    processor: float
     peak: int
     before: int
 
@@ -64,7 +66,7 @@ def run(quick: bool) -> Iterator[Row]:
 
 def tables(rows: Sequence[Row]) -> str:
     """Return what was measured, in Markdown."""
-    lines = [["mesh", "triangles", "question", "answer", "time", "peak, MiB", "grown by, MiB"]]
+    lines = [["mesh", "triangles", "question", "answer", "time", "processor", "peak", "grown"]]
     for row in rows:
         facts: Any = row.notes[OURS]
         sizes = (facts["peak"], facts["peak"] - facts["before"])
@@ -75,7 +77,8 @@ def tables(rows: Sequence[Row]) -> str:
                 facts["question"],
                 facts["status"],
                 time_text(facts["seconds"]),
-                *(f"{size / 2**20:,.0f}" for size in sizes),
+                time_text(facts["processor"]),
+                *(f"{size / 2**20:,.0f} MiB" for size in sizes),
             ]
         )
     return markdown(lines)
@@ -87,7 +90,7 @@ def apart(mesh: str, question: str, count: int) -> Outcome:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         words = (done.stderr.strip().splitlines() or [""])[-1]
-        return Outcome(f"died with {done.returncode}: {words}", 0.0, 0, 0)
+        return Outcome(f"died with {done.returncode}: {words}", 0.0, 0.0, 0, 0)
     return Outcome(**json.loads(done.stdout))
 
 
@@ -105,9 +108,10 @@ def ask(mesh: str, question: str, count: int) -> Outcome:
     pair = HOSTILE[mesh](count)
     call = QUESTIONS[question](pair)
     before = peak_bytes()
-    start = time.perf_counter()
+    start, used = time.perf_counter(), time.process_time()
     status = call()
-    return Outcome(status, time.perf_counter() - start, peak_bytes(), before)
+    taken = time.perf_counter() - start, time.process_time() - used
+    return Outcome(status, *taken, peak_bytes(), before)
 
 
 def accuracy(**given: Any) -> Accuracy:
@@ -266,8 +270,8 @@ QUESTIONS: dict[str, Callable[[HostilePair], Callable[[], str]]] = {
     "collide, apart": _collide("apart"),
     "collide, close": _collide("close"),
     f"{MOST_PAIRS:,} pairs": _pairs(MOST_PAIRS),
-    # ALL
-    # BLOCKS
+    "all pairs": _pairs(None),
+    "all pairs, in blocks": _blocks,
     "distance": _distance,
     "first contact": _first(turns=False),
     "first contact, turning": _first(turns=True),
