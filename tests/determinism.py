@@ -46,7 +46,7 @@ from obbcli import cores
 from obbcli.cli import run_process
 count = int(sys.argv.pop(1))
 cores.usable_cores = lambda: count
-run_process()
+sys.exit(run_process())
 """
 # What the C library, BLAS and NumPy take a processor for: one without wide registers and fused
 # operations, of which their sines and products of matrices make use.
