@@ -3,7 +3,7 @@
 #include <array>
 #include <cstring>
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(OBB_NARROW)
 #include <immintrin.h>
 #endif
 
@@ -56,7 +56,7 @@ std::uint32_t advance_by_tables(std::uint32_t rest, std::span<const std::byte> b
     return rest;
 }
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(OBB_NARROW)
 
 // Powers of x modulo the polynomial, as Gopal et al. 2009 (Fast CRC computation for generic
 // polynomials using PCLMULQDQ) have them: what moves 128 bits past 512, and past 128, bits; what
@@ -118,7 +118,7 @@ std::uint32_t crc32_by_tables(std::span<const std::byte> bytes) {
 
 std::uint32_t crc32(std::span<const std::byte> bytes) {
     std::uint32_t rest = ~std::uint32_t{0};
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(OBB_NARROW)
     const std::size_t whole = bytes.size() / 64 * 64;
     static const bool can_fold =
         __builtin_cpu_supports("pclmul") != 0 && __builtin_cpu_supports("sse4.1") != 0;

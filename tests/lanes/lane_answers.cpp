@@ -1,6 +1,7 @@
 // Prints all bits of answers and counts, to be compared between kernels compiled for registers of
 // one width and of another.
 #include "contact_query.hpp"
+#include "crc32.hpp"
 #include "distance_query.hpp"
 #include "lanes.hpp"
 #include "registers.hpp"
@@ -154,8 +155,9 @@ void ask(const Surface& s, const obb::BuildOptions& options, double size) {
     while (!tree.advance(100'000)) {
     }
     print("tree", {},
-          std::array{std::uint64_t{tree.node_count()}, digest(tree.nodes()),
-                     digest(tree.triangle_ids())});
+          std::array<std::uint64_t, 4>{tree.node_count(), digest(tree.nodes()),
+                                       digest(tree.triangle_ids()),
+                                       obb::crc32(std::as_bytes(tree.nodes()))});
     Random random;
     for (int i = 0; i < kPoses; ++i) {
         ask_at_rest(tree.view(), tree.view(), pose(random, size, 0.3 * (i % 4)));
@@ -175,6 +177,9 @@ int main() {
                                obb::Fit::kMinVolume, obb::Fit::kAxisAligned}) {
         ask(bumpy_grid(24), {.fit = fit}, 1);
         ask(soup(300, 1), {.fit = fit, .split = obb::Split::kMedian}, 1);
+    }
+    for (const obb::Split split : {obb::Split::kMedian, obb::Split::kCenter}) {
+        ask(bumpy_grid(24), {.split = split}, 1);
     }
     for (const double size : {0x1p-200, 1e3, 0x1p200}) {
         ask(soup(500, size), {.split = obb::Split::kCenter, .leaf_size = 3}, size);

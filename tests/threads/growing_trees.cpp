@@ -1,6 +1,8 @@
 // Questions from several threads to trees that grow, or are read, as they are asked, for the thread
 // sanitizer: every answer must be that of one thread and whole trees.
+#include "contact_query.hpp"
 #include "contact_sweep.hpp"
+#include "containment_query.hpp"
 #include "crc32.hpp"
 #include "distance_query.hpp"
 #include "file_tree.hpp"
@@ -26,6 +28,7 @@ constexpr int kSectors = 40;
 constexpr int kRounds = 6;
 constexpr std::size_t kThreads = 4;
 constexpr std::size_t kPoses = 8;
+constexpr std::size_t kContacts = 20;
 
 struct Surface {
     std::vector<obb::Vec3> vertices;
@@ -64,6 +67,8 @@ struct Answer {
     obb::SweepStatus status;
     double first_contact;
     std::uint64_t pops;
+    std::vector<double> contacts;
+    bool is_inside;
     friend bool operator==(const Answer&, const Answer&) = default;
 };
 
@@ -81,6 +86,36 @@ obb::SweepAnswer meet(const obb::TreeView& a, const obb::TreeView& b, std::size_
     obb::SweepAnswer answer = row.answer();
     answer.low = answer.status == obb::SweepStatus::kContact ? answer.low : -1;
     return answer;
+}
+
+// The times of the first pairs of triangles that meet, in order, while b slides towards a.
+std::vector<double> contacts(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
+    obb::Pose away = pose(index);
+    away.translation.x += 3;
+    const obb::Screw sliding{{-4, 0, 0}, {}, {}};
+    obb::ContactQuery query(
+        a, {}, {}, b, away, sliding,
+        {.duration = 1, .time_tolerance = 1e-6, .distance_tolerance = 1e-6, .each_pair = true});
+    std::vector<double> times;
+    bool is_done = false;
+    while (!is_done && times.size() < kContacts) {
+        is_done = query.advance(1000);
+        while (const auto next = query.take()) {
+            times.push_back(next->low);
+        }
+    }
+    times.resize(std::min(times.size(), kContacts));
+    return times;
+}
+
+// Whether the torus, placed in the world, holds a point of its tube's middle, asked after others.
+bool is_inside(const obb::TreeView& a, std::size_t index) {
+    obb::ContainmentQuery query(
+        a, pose(index),
+        {{9, 9, 9}, pose(index).translation, obb::posed(pose(index), obb::Vec3{1, 0, 0})});
+    while (!query.advance(100)) {
+    }
+    return query.inside() == 2;
 }
 
 Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
@@ -103,7 +138,9 @@ Answer ask(const obb::TreeView& a, const obb::TreeView& b, std::size_t index) {
             bounds.high,
             met.status,
             met.low,
-            met.counts.pops};
+            met.counts.pops,
+            contacts(a, b, index),
+            is_inside(a, index)};
 }
 
 // Asks from several threads at once while another one makes the rest of tree a.
