@@ -33,6 +33,7 @@ help:
 	@echo 'make docs      one HTML page of the Python package: .build/docs/obbtree.html'
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
+	@echo 'make fuzz      look for bytes that break a reader (FUZZ_SECONDS=60 for each target)'
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
 	@echo 'make same-bits that kernels say the same with wide registers and without'
 	@echo 'make faults    full disks, closed streams, 1,000 interrupts: how commands end (FAULT_ARGS="--only stdin")'
@@ -66,7 +67,7 @@ demo: .venv/installed
 test: .venv/installed
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
 
-check: lint format-check types stub-check docs test
+check: lint format-check types stub-check docs test fuzz-smoke
 
 lint: .venv/check-tools
 	$(BIN)/ruff check
@@ -106,10 +107,80 @@ faults: .venv/installed
 
 # The address sanitizer wants to be the first library loaded, and the C++ library before the first exception;
 # what asks for more memory than there is gets none, as without it.
-sanitize: .build/sanitize/installed
+sanitize: .build/sanitize/installed sanitize-fuzz
 	asan=$$($${CXX:-c++} -print-file-name=libasan.so); cxx=$$($${CXX:-c++} -print-file-name=libstdc++.so.6); \
 	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
+
+# What reads bytes, given the cases found before and new ones. C++ targets are driven by libFuzzer
+# where Clang is at hand, else by a driver of our own, guided by GCC's coverage.
+FUZZ_SECONDS ?= 60
+FUZZ := tests/fuzz
+FUZZ_TARGETS := tree_file first_contact predicates
+FUZZ_SOURCES := $(wildcard $(FUZZ)/*.cpp $(FUZZ)/*.hpp)
+FUZZ_FLAGS := -std=c++20 -O2 -g1 -ffp-contract=off -Wno-psabi -I$(KERNELS) -I$(FUZZ)
+SANITIZED := -fsanitize=address,undefined -fno-sanitize-recover=undefined
+QUIET_ASAN := ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
+
+# As many inputs as take some seconds: the same ones every time.
+fuzz-smoke: .build/fuzz/plain
+	.build/fuzz/plain/tree_file -runs=2000 $(FUZZ)/corpus/tree_file
+	.build/fuzz/plain/first_contact -runs=2000 $(FUZZ)/corpus/first_contact
+	.build/fuzz/plain/predicates -runs=300 $(FUZZ)/corpus/predicates
+	$(BIN)/python $(FUZZ)/run.py --runs 200
+
+sanitize-fuzz: .build/fuzz/sanitized
+	for target in $(FUZZ_TARGETS); do \
+	  $(QUIET_ASAN) .build/fuzz/sanitized/$$target -runs=20 $(FUZZ)/corpus/$$target; \
+	done
+
+fuzz: .build/fuzz/deep
+	@mkdir -p .build/fuzz/found; cd .build/fuzz/found; \
+	for target in $(FUZZ_TARGETS); do \
+	  echo "== $$target"; mkdir -p $$target.corpus; \
+	  if [ -f ../deep/libfuzzer ]; then \
+	    $(QUIET_ASAN) ../deep/$$target -max_total_time=$(FUZZ_SECONDS) -max_len=6500 -timeout=60 -print_final_stats=1 \
+	      $$target.corpus ../../../$(FUZZ)/corpus/$$target; \
+	  else \
+	    $(QUIET_ASAN) ../deep/$$target -seconds=$(FUZZ_SECONDS) ../../../$(FUZZ)/corpus/$$target; \
+	  fi; \
+	done
+	$(BIN)/python $(FUZZ)/run.py --seconds $(FUZZ_SECONDS)
+
+# With the kernels that stand installed, of which the build leaves a library.
+.build/fuzz/plain: $(FUZZ_SOURCES) .venv/installed
+	@mkdir -p $@.new; . ./.venv/compiler; for target in $(FUZZ_TARGETS); do \
+	  $${CXX:-c++} $(FUZZ_FLAGS) $(FUZZ)/fuzz_$$target.cpp $(FUZZ)/driver.cpp "$$(ls -t .build/*/libobb_kernels.a | head -n 1)" \
+	    -pthread -o $@.new/$$target; \
+	done
+	@rm -rf $@; mv $@.new $@
+
+.build/fuzz/sanitized: $(FUZZ_SOURCES) .build/sanitize/installed
+	@mkdir -p $@.new; for target in $(FUZZ_TARGETS); do \
+	  $${CXX:-c++} $(FUZZ_FLAGS) $(SANITIZED) $(FUZZ)/fuzz_$$target.cpp $(FUZZ)/driver.cpp \
+	    .build/sanitize/objects/libobb_kernels.a -pthread -o $@.new/$$target; \
+	done
+	@rm -rf $@; mv $@.new $@
+
+.build/fuzz/deep: $(FUZZ_SOURCES) $(SOURCES) | .venv/installed
+	@if [ -s .venv/compiler ]; then echo 'make fuzz needs Clang or GCC: the fetched compiler has no sanitizers' >&2; exit 1; fi
+	@rm -rf $@.new; mkdir -p $@.new/objects; \
+	if command -v clang++ >/dev/null; then \
+	  cxx=clang++ cover=-fsanitize=fuzzer-no-link link=-fsanitize=fuzzer driver=; touch $@.new/libfuzzer; \
+	else \
+	  cxx=$${CXX:-c++} cover=-fsanitize-coverage=trace-pc link= driver=$(FUZZ)/driver.cpp; \
+	fi; \
+	echo "Building the fuzz targets with $$cxx"; \
+	printf '%s\n' $(THREAD_KERNELS) $(patsubst %,$(FUZZ)/fuzz_%.cpp,$(FUZZ_TARGETS)) | \
+	  xargs -n 1 -P "$$(getconf _NPROCESSORS_ONLN)" sh -c "$$cxx $(FUZZ_FLAGS) $(SANITIZED) $$cover -c \"\$$0\" \
+	    -o $@.new/objects/\"\$$(basename \"\$$0\" .cpp)\".o"; \
+	for target in $(FUZZ_TARGETS); do \
+	  mv $@.new/objects/fuzz_$$target.o $@.new/$$target.o; \
+	done; \
+	for target in $(FUZZ_TARGETS); do \
+	  $$cxx $(FUZZ_FLAGS) $(SANITIZED) $$link $@.new/$$target.o $$driver $@.new/objects/*.o -pthread -o $@.new/$$target; \
+	done
+	@rm -rf $@; mv $@.new $@
 
 THREAD_TEST := tests/threads/growing_trees.cpp
 THREAD_KERNELS := $(filter-out $(KERNELS)/bindings%,$(filter %.cpp,$(SOURCES)))

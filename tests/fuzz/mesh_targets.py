@@ -1,0 +1,93 @@
+"""Mesh files of every format: a sound mesh, or one MeshError."""
+
+from __future__ import annotations
+
+import base64
+import json
+import tempfile
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
+from fuzz.kinds import Target, require
+from gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
+from plain_files import FILES
+
+from obbcli.errors import MeshError
+from obbcli.mesh import load_mesh, load_mesh_bytes
+
+SUFFIXES = {
+    "stl": (".stl",),
+    "obj": (".obj",),
+    "ply": (".ply",),
+    "off": (".off",),
+    "gltf": (".glb", ".gltf"),
+    "vtk": (".vtk",),
+    "vtu": (".vtu",),
+    "gmsh": (".msh",),
+    "abaqus": (".inp",),
+    "nastran": (".bdf", ".fem", ".nas"),
+    "medit": (".mesh", ".meshb"),
+    "tecplot": (".dat", ".tec"),
+    "others": (".avs", ".vol", ".su2", ".f3grid", ".mdpa", ".xml"),
+}
+
+
+def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
+    """Return files of these formats, each after a byte that says which suffix it is for."""
+    files = [(suffix, data) for suffix, data in FILES.values()]
+    body = POSITIONS + INDICES
+    uri = "data:;base64," + base64.b64encode(body).decode()
+    inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
+    files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
+    surface = [("triangle", np.array([[0, 1, 2], [0, 2, 3]]))]
+    volumes = [("tetra", TETRA)], [("hexahedron", HEXAHEDRON)]
+    with tempfile.TemporaryDirectory() as folder:
+        for kinds, choices in ((SURFACE_KINDS, (surface,)), (VOLUME_KINDS, volumes)):
+            for name, options in kinds:
+                suffix = Path(name).suffix
+                for cells in choices if suffix in suffixes else ():
+                    if suffix == ".xml" and cells[0][0] == "hexahedron":
+                        continue  # which DOLFIN does not know
+                    path = write(Path(folder) / name, cells, POINTS, **options)
+                    files.append((suffix, path.read_bytes()))
+    return [bytes([suffixes.index(suffix)]) + data for suffix, data in files if suffix in suffixes]
+
+
+def _run(suffixes: tuple[str, ...], data: bytes) -> None:
+    suffix = suffixes[data[0] % len(suffixes) if data else 0]
+    try:
+        mesh = load_mesh_bytes(data[1:], suffix)
+    except MeshError:
+        mesh = None
+    if mesh is not None:
+        require(np.isfinite(mesh.vertices).all(), "coordinates are finite")
+        require(len(mesh.triangles) > 0, "a mesh has triangles")
+        require(
+            mesh.triangles.min() >= 0 and mesh.triangles.max() < len(mesh.vertices),
+            "triangles use vertices that are there",
+        )
+    if suffix == ".stl":
+        _run_from_a_file(data[1:], None if mesh is None else mesh.vertices)
+
+
+def _run_from_a_file(data: bytes, vertices: object) -> None:
+    """Compare what another reader makes of a file whose digest nobody asks for."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.stl"
+        path.write_bytes(data)
+        try:
+            found = load_mesh(path, hashed=False).vertices
+        except MeshError:
+            found = None
+    require(
+        found is vertices is None or np.array_equal(np.asarray(found), np.asarray(vertices)),
+        "both readers say the same",
+    )
+
+
+TARGETS = {
+    name: Target(partial(_seeds, suffixes), partial(_run, suffixes))
+    for name, suffixes in SUFFIXES.items()
+}
