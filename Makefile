@@ -23,13 +23,13 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits \
+.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits fuzz fuzz-smoke sanitize-fuzz \
   determinism test-oldest test-newest faults wheel pictures browser clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
 	@echo 'make test      set everything up and run the tests'
-	@echo 'make check     lint, formatting, types, stub, docs, tests'
+	@echo 'make check     lint, formatting, types, stub, docs, tests, half a minute of fuzzing'
 	@echo 'make docs      one HTML page of the Python package: .build/docs/obbtree.html'
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
 	@echo 'make sanitize  kernel tests under the address and undefined-behaviour sanitizers'
