@@ -106,6 +106,7 @@ NEEDED = {
 # parts of one version or other, what gettext looks up, what finds an editable installation.
 OTHERS = {
     *("atexit", "bisect", "copy", "dataclasses", "fnmatch", "gc", "glob", "struct", "zlib"),
+    *("grp", "pwd"),  # of pathlib since Python 3.13
     *("pathlib", "ntpath", "urllib", "urllib.parse", "ipaddress"),
     "locale",
     "resource",
