@@ -248,3 +248,9 @@ def axis(name: str, quantities: dict[str, Any]) -> Floats:
     """Return L by its name: one vector, or two that are crossed."""
     parts = [quantities[part] for part in name.split()]
     return np.asarray(parts[0] if len(parts) == 1 else np.cross(*parts))
+
+
+def frame(rng: Any) -> Any:
+    """Return right-handed orthonormal axes as rows, as the paper has them."""
+    q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return q * np.sign(np.linalg.det(q))

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from brackets import assert_at, bounds
 from oracles_mesh import mesh_pairs
 from scenes import random_rotation
 from screw_meshes import angle_bar, box, cube, octahedron, tetrahedron
 
 import obbcli
-from obbcli import Accuracy, Body, FirstContact, Mesh, Motion, Pose, Query, Status
+from obbcli import Accuracy, Body, Mesh, Motion, Pose, Query, Status
 
 if TYPE_CHECKING:
     from obbcli.motion import PathMotion
@@ -31,23 +32,6 @@ def heights(*levels: float) -> list[Pose]:
 
 def falling(times: Any, *levels: float) -> Body:
     return Body(CUBE, motion=Motion.through(times, heights(*levels)))
-
-
-def bounds(answer: FirstContact) -> tuple[float, float]:
-    assert answer.time_bounds is not None
-    low, high = answer.time_bounds
-    assert high is not None
-    assert answer.time == low
-    assert low <= high
-    return low, high
-
-
-def assert_at(answer: FirstContact, time: float, width: float) -> None:
-    """Fail unless the bracket of a contact is narrow and at a time."""
-    assert answer.status is Status.CONTACT
-    low, high = bounds(answer)
-    assert high - low <= width
-    assert low - width <= time <= high + width
 
 
 def split(motion: Motion, start: Pose, duration: float, pieces: int) -> PathMotion:
@@ -231,37 +215,6 @@ def test_clearance_counts_along_a_path():
     answer = obbcli.first_contact(falling([0, 1, 5], 4, 4, 0), FLOOR, None, Accuracy(clearance=0.5))
 
     assert_at(answer, 4.5, 1e-8)
-
-
-def test_poses_that_are_not_quite_rigid_cost_their_defect():
-    crooked = np.eye(3) + 4e-10 * np.eye(3)[::-1]
-    answers = []
-    for gap in (1e-11, 1e-7):
-        poses = [
-            Pose(None, (0, 0, 1 + gap)),
-            Pose(crooked, (1, 0, 1 + gap + 4e-10)),
-            Pose(None, (2, 0, 1 + gap)),
-        ]
-        answers.append(
-            obbcli.first_contact(Body(CUBE, motion=Motion.through([0, 1, 2], poses)), FLOOR)
-        )
-
-    assert answers[0].status is Status.CONTACT
-    assert answers[0].evidence == "within_tolerance"
-    assert answers[0].distance is not None
-    assert 1e-11 <= answers[0].distance <= 1e-8
-    assert answers[1].status is Status.SEPARATED
-
-
-def test_sheet_that_only_jumps_over_a_point_is_near_it():
-    # No turn makes a mesh longer: its far side is at 1 in the first pose, and 2e-10 further then.
-    longer = Pose(np.diag([1 + 2e-10, 1.0, 1.0]))
-    wall = Mesh([[1, -1, -1], [1, 1, -1], [1, 0, 2]], [[0, 1, 2]])
-    grows = Body(wall, motion=Motion.through([0, 1], [Pose(), longer]))
-    dust = Mesh([[1 + 1e-10, 0, 0]] * 3, [[0, 1, 2]])
-
-    assert not grows.motion.is_at_rest
-    assert_at(obbcli.first_contact(grows, dust), 0.0, 1e-9)
 
 
 @pytest.mark.parametrize("seed", range(4))

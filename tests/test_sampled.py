@@ -12,7 +12,7 @@ from scenes import random_rotation
 from screw_meshes import angle_bar, box, cube, octahedron, star, tetrahedron
 
 import obbcli
-from obbcli import Accuracy, Body, FirstContact, Mesh, Motion, MotionError, ObbTree, Pose, Status
+from obbcli import Accuracy, Body, FirstContact, Mesh, Motion, ObbTree, Pose, Status
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Integrator
@@ -284,15 +284,6 @@ def test_limits_leave_nothing_proven():
         assert answer.status is Status.UNRESOLVED
         assert answer.time_bounds == (0, None)
     assert many.stats.pops <= 1010
-
-
-def test_euler_refuses_a_step_of_which_nothing_is_left():
-    spin = Motion(None, (1e15, 1e15, 0))
-    away = Body(CUBE, Pose(translation=(9, 0, 0)), spin)
-
-    with pytest.raises(MotionError, match=r"^steps: too few"):
-        obbcli.first_contact(away, CUBE, 1.0, sampled(2, "euler"))
-    assert obbcli.first_contact(away, CUBE, 1.0, sampled(2)).status is Status.SEPARATED
 
 
 def test_one_tree_may_be_both_bodies():

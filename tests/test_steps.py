@@ -10,7 +10,7 @@ import pytest
 from oracles_rigid import rigid_point
 from screw_meshes import angle_bar, box, cube, octahedron, star, tetrahedron
 
-from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose
+from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status, first_contact
 from obbcli.steps import steps_of
 
 if TYPE_CHECKING:
@@ -283,3 +283,14 @@ def test_huge_scenes_are_stepped(shift: float):
     for leg in steps((body, Body(TREES[0])), 1.0, 4):
         chord = 2 * math.sqrt(2) * 1e300 * math.sin(0.125)
         assert chord <= leg.slack <= 1.001 * chord + 2.0**-40 * abs(shift)
+
+
+def test_euler_refuses_a_step_of_which_nothing_is_left():
+    still = Mesh(*cube())
+    exact, euler = (Accuracy(method="sampled", steps=2, integrator=i) for i in ("exact", "euler"))
+    spin = Motion(None, (1e15, 1e15, 0))
+    away = Body(still, Pose(translation=(9, 0, 0)), spin)
+
+    with pytest.raises(MotionError, match=r"^steps: too few"):
+        first_contact(away, still, 1.0, euler)
+    assert first_contact(away, still, 1.0, exact).status is Status.SEPARATED

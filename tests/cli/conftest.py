@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from cube_files import cube, obj, stl
+from scene_of_cubes import SCENE
 from schemas import require_valid, require_valid_lines
 
 from obbcli.cli import main
+from obbcli.study import measuring
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,6 +68,27 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "apart.obj").write_text(obj(cube((1 + 2**-40, 0, 0))))
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+@pytest.fixture
+def scene(here: Path) -> Path:
+    """Work in a folder with a scene: unit cubes, of which one hits another at t = 2."""
+    (here / "far.stl").write_bytes(stl(cube()))
+    (here / "cell.toml").write_text(SCENE)
+    return here
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let `tradeoff` measure a few settings alone: those come first that cost least."""
+    whole = measuring.plan
+
+    def first(*args: Any, **kwargs: Any) -> list[Any]:
+        return [one for k, one in enumerate(whole(*args, **kwargs)) if k % 3 == 0][:10]
+
+    monkeypatch.setattr(measuring, "plan", first)
+    monkeypatch.setattr(measuring, "_EARLY_ROUNDS", 1)
+    monkeypatch.setattr(measuring, "_ROUNDS", 2)
 
 
 def swept(path: Path) -> list[Any]:

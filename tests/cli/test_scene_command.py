@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from cube_files import cube, stl
+from scene_of_cubes import SCENE, add
 
 import obbcli.scene.earliest
 from obbcli import ObbTree
@@ -18,36 +17,6 @@ if TYPE_CHECKING:
     from conftest import Ended
 
     Run = Callable[..., Ended]
-
-SCENE = """
-duration = 4
-[[body]]
-name = "still"
-mesh = "cube.stl"
-static = true
-[[body]]
-name = "slow"
-mesh = "cube.stl"
-pose = { translation = [3, 0, 0] }
-motion = { linear_velocity = [-1, 0, 0] }
-[[body]]
-name = "far, far"
-mesh = "far.stl"
-pose = { translation = [0, 50, 0] }
-"""
-
-
-@pytest.fixture
-def scene(here: Path) -> Path:
-    """Work in a folder with a scene: unit cubes, of which one hits another at t = 2."""
-    (here / "far.stl").write_bytes(stl(cube()))
-    (here / "cell.toml").write_text(SCENE)
-    return here
-
-
-def add(scene: Path, text: str) -> None:
-    """Add to the scene."""
-    (scene / "cell.toml").write_text(SCENE + text)
 
 
 @pytest.mark.usefixtures("scene")
@@ -178,53 +147,6 @@ def test_separated_by_samples_is_no_proof(obbtree: Run, scene: Path) -> None:
     assert "no contact in the whole duration as sampled" in ended.out
 
 
-def test_pairs_limit_the_files_that_are_read(obbtree: Run, scene: Path) -> None:
-    (scene / "far.stl").unlink()
-
-    assert obbtree("scene", "cell.toml", "--pairs", "slow,still", "-q").code == 0
-    ended = obbtree("scene", "cell.toml")
-    assert ended.code == 3
-    assert ended.err == "error: far.stl: no such file; check the path\n"
-
-
-@pytest.mark.parametrize(
-    ("pairs", "message"),
-    [
-        ("still", "--pairs still: names no two bodies; write --pairs A,B"),
-        ("still,slo", "no body of the scene is called 'slo'; did you mean 'slow'?"),
-        ("still,still", "is no pair"),
-        ("a,b,c", "--pairs a,b,c: can be read in several ways"),
-    ],
-)
-@pytest.mark.usefixtures("scene")
-def test_pairs_that_are_none_are_usage_errors(pairs: str, message: str, obbtree: Run) -> None:
-    ended = obbtree("scene", "cell.toml", "--pairs", pairs)
-
-    assert ended.code == 2
-    assert message in ended.err
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--first", "--limit", "2"), "--limit: lists contacts, and --first asks for one"),
-        (("--first", "--all-contacts"), "--all-contacts: lists contacts, and --first asks for one"),
-        (("--all-contacts", "--method", "sampled"), "sampling finds the first contact alone"),
-        (("--steps", "9"), "--steps: has a meaning with --method sampled alone"),
-        (("--limit", "0"), "'0' is not a whole number of at least 1"),
-        (("--duration", "-1"), "'-1' is not a finite number of at least 0"),
-    ],
-)
-@pytest.mark.usefixtures("scene")
-def test_options_that_contradict_are_refused(
-    options: tuple[str, ...], message: str, obbtree: Run
-) -> None:
-    ended = obbtree("scene", "cell.toml", *options)
-
-    assert ended.code == 2
-    assert message in ended.err
-
-
 def test_options_override_the_file(obbtree: Run, scene: Path) -> None:
     (scene / "cell.toml").write_text("accuracy = { clearance = 0.5, max_iterations = 777 }" + SCENE)
 
@@ -322,37 +244,3 @@ def test_interrupt_prints_what_is_known(
     assert {contact["body_a"] for contact in result["contacts"]} == {"still"}
     assert len(result["unresolved"]) == 2
     assert (ended.error["code"], ended.error["remedy"]) == (130, "unresolved pairs: 2")
-
-
-def test_output_spares_the_inputs(obbtree: Run, scene: Path) -> None:
-    for name in ("cell.toml", "far.stl"):
-        ended = obbtree("scene", "cell.toml", "-o", name)
-        assert ended.code == 2
-        assert f"is the input {name}, which would be lost" in ended.err
-    assert obbtree("scene", "cell.toml", "-o", "answer.json", "--json").out == ""
-    assert json.loads((scene / "answer.json").read_text())["result"]["time"] == 2
-
-
-@pytest.mark.usefixtures("scene")
-def test_faults_of_the_file_are_input_errors(obbtree: Run, here: Path) -> None:
-    (here / "bad.toml").write_text(SCENE.replace("mesh", "mash"))
-    (here / "text.toml").write_text(SCENE + "\n=")
-
-    ended = obbtree("scene", "bad.toml")
-    assert ended.code == 3
-    assert ended.err == (
-        "error: bad.toml: body[0] 'still': unknown key 'mash'; did you mean 'mesh'?\n"
-    )
-    assert obbtree("scene", "text.toml").err.startswith("error: text.toml:17: is no TOML: ")
-    assert obbtree("scene", "lost.toml", "--json").error["kind"] == "SceneError"
-
-
-def test_tree_files_can_be_taken_unverified(obbtree: Run, scene: Path) -> None:
-    ObbTree.build(scene / "cube.stl").save(scene / "cube.obbt")
-    data = bytearray((scene / "cube.obbt").read_bytes())
-    data[-1] ^= 1  # what pads the last section
-    (scene / "cube.obbt").write_bytes(data)
-    (scene / "cell.toml").write_text(SCENE.replace("cube.stl", "cube.obbt"))
-
-    assert obbtree("scene", "cell.toml").code == 3
-    assert obbtree("scene", "cell.toml", "--no-verify").code == 0

@@ -2,38 +2,16 @@
 
 from __future__ import annotations
 
-import builtins
-import importlib.util
 import json
-import math
 import shlex
-import struct
 from dataclasses import replace
-from xml.etree import ElementTree
 
 import pytest
+from turning_cubes import TURN, TURN_TIME, asked
 
 import obbcli
-from obbcli.study import measuring
 from obbcli.study.claims import Judge
 from obbcli.study.measuring import Study
-
-# A cube that turns into one beside it.
-TURN = ("--translate-b", 0.1, 0, 0, "--omega", 0, 0, 1)
-TURN_TIME = math.pi / 4 - math.acos(0.6 / math.sqrt(0.5))
-
-
-@pytest.fixture
-def small(monkeypatch):
-    """Measure a few settings alone: those come first that cost least."""
-    whole = measuring.plan
-
-    def first(*args, **kwargs):
-        return [one for k, one in enumerate(whole(*args, **kwargs)) if k % 3 == 0][:10]
-
-    monkeypatch.setattr(measuring, "plan", first)
-    monkeypatch.setattr(measuring, "_EARLY_ROUNDS", 1)
-    monkeypatch.setattr(measuring, "_ROUNDS", 2)
 
 
 @pytest.fixture
@@ -48,11 +26,6 @@ def lying(monkeypatch):
         return answer, seconds
 
     monkeypatch.setattr(Study, "_timed", timed)
-
-
-def asked(obbtree, *words):
-    """Run the command on cubes that turn."""
-    return obbtree("tradeoff", "cube.stl", "touching.obj", *TURN, "--budget", 1000, *words)
 
 
 @pytest.mark.usefixtures("here", "small")
@@ -228,55 +201,6 @@ def test_trees_are_used_as_they_are(obbtree):
     assert ended.code == 0
     assert {json.dumps(row["build"]) for row in ended.json["result"]["rows"]} == {"{}"}
     assert all("build" not in row["command"] for row in ended.json["result"]["rows"])
-
-
-@pytest.mark.usefixtures("small")
-@pytest.mark.parametrize(
-    "words",
-    [
-        TURN,
-        (*TURN, "--method", "sampled", "--steps", 1),
-        ("--vel", 0, 0, 0),
-        ("--translate-b", 1, 0, 0, "--vel", 1, 0, 0),
-    ],
-)
-def test_plot_is_a_whole_picture(here, obbtree, words):
-    for name in ("trade.svg", "trade.png"):
-        ended = obbtree("tradeoff", "cube.stl", "touching.obj", *words, "--budget", 1000,
-                        "--plot", name, "--quiet")  # fmt: skip
-        assert ended.code == 0
-    assert len(list(ElementTree.parse(here / "trade.svg").iter())) > 100
-    png = (here / "trade.png").read_bytes()
-    assert png.startswith(b"\x89PNG")
-    width, height = struct.unpack(">II", png[16:24])
-    assert width > 1000
-    assert height > 600
-    assert png.endswith(b"IEND\xaeB`\x82")
-
-
-def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
-    whole = importlib.util.find_spec
-    monkeypatch.setattr(
-        "obbcli.cli.tradeoff.find_spec", lambda name: None if name == "matplotlib" else whole(name)
-    )
-
-    ended = asked(obbtree, "--plot", "trade.svg")
-
-    assert ended.code == 2
-    assert "pip install 'obbtree[plot]'" in ended.err
-    assert ended.out == ""
-
-
-def test_matplotlib_is_imported_only_where_it_is_asked_for(here, obbtree, monkeypatch, small):
-    whole = builtins.__import__
-
-    def refusing(name, *args, **kwargs):
-        assert not name.startswith("matplotlib")
-        return whole(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", refusing)
-
-    assert asked(obbtree, "--quiet").code == 0
 
 
 @pytest.mark.parametrize(
