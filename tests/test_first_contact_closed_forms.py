@@ -9,7 +9,7 @@ from screw_answers import ask, assert_bracket, assert_coherent, assert_width, si
 from screw_planes import plane_time
 from screw_scenes import ScrewScene, Z, all_scenes
 
-from obbcli import Status
+from obbcli import Body, Mesh, Motion, Status, first_contact
 
 SCENES = list(all_scenes())
 CONTACTS = [scene for scene in SCENES if scene.status == "contact"]
@@ -72,3 +72,20 @@ def test_default_pivot_is_the_centroid_of_the_surface() -> None:
 
     assert time is not None
     assert answer.time == pytest.approx(float(time), abs=2e-9)
+
+
+@pytest.mark.parametrize("exponent", [-54, -60, -63, -64, -80, -300, -1000])
+@pytest.mark.parametrize("gap", [1.0, 2.0**-40, 2.0**80])
+def test_times_just_after_a_power_of_two_have_a_double_above(exponent: int, gap: float) -> None:
+    chased = Fraction(2) ** exponent
+    time = 1 / (1 - chased)  # of a gap that is closed at the speed 1 - 2^exponent in its units
+    corner = np.array([[0.0, 0, 0], [0, 1, 0], [0, 0, 1]])
+    a = Body(Mesh(corner, [[0, 1, 2]]), motion=Motion([gap, 0, 0]))
+    b = Mesh(corner + np.array([gap, 0, 0]), [[0, 1, 2]])
+    answer = first_contact(a, Body(b, motion=Motion([gap * 2.0**exponent, 0, 0])), duration=2)
+
+    assert answer.time_bounds is not None
+    low, high = answer.time_bounds
+    assert high is not None
+    assert Fraction(low) < time < Fraction(high)
+    assert high == np.nextafter(low, 2)

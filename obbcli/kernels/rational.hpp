@@ -89,12 +89,17 @@ template <std::size_t K>
     int drop = static_cast<int>(std::bit_width(quotient)) - 53;
     drop = std::max(drop, -1074 - exponent - quotient_exponent);
     std::int64_t mantissa = drop >= 64 ? 0 : static_cast<std::int64_t>(quotient >> drop);
-    const int unit = quotient_exponent + drop;
+    int unit = quotient_exponent + drop;
     while (compare(value, mantissa + 1, unit) >= 0) {
         ++mantissa;
     }
     while (compare(value, mantissa, unit) < 0) {
         --mantissa;
+    }
+    if ((mantissa >> 53) != 0) {
+        // The quotient was cut to below a power of two that the fraction is not below.
+        mantissa >>= 1;
+        ++unit;
     }
     const auto half = compare(value, 2 * mantissa + 1, unit - 1);
     const bool up = half > 0 || (half == 0 && mantissa % 2 != 0);
