@@ -89,21 +89,17 @@ class Query:
     ) -> None:
         self._accuracy = _EXACT if accuracy is None else accuracy
         self._bodies = as_body(a), as_body(b)
-        self._follows_path = isinstance(self._bodies[0].motion, PathMotion) or isinstance(
-            self._bodies[1].motion, PathMotion
-        )
+        self._follows_path = any(isinstance(body.motion, PathMotion) for body in self._bodies)
         self._duration = duration_of(duration, self._bodies)
-        self._seconds = {"load": 0.0, "query": 0.0}
         start = time.perf_counter()
         self._trees = trees_of(self._bodies)
-        self._seconds["load"] = time.perf_counter() - start
-        start = time.perf_counter()
+        loaded = time.perf_counter()
         placed = self._bodies
         if self._follows_path:
             placed = next(legs_of(self._bodies, self._trees, 0.0)).bodies
         self._at_start = static_query(self._trees, placed, self._accuracy)
         self._solids = Containment(placed, self._trees, self._at_start) if solid else None
-        self._seconds["query"] = time.perf_counter() - start
+        self._seconds = {"load": loaded - start, "query": time.perf_counter() - loaded}
         self._moving: kernels.ContactQuery | None = None
         self._legs = self._relay(partial(Query, any_contact=any_contact))
         self._any_contact = any_contact
@@ -113,18 +109,15 @@ class Query:
     def _relay(self, ask: Asker) -> Relay | None:
         """Return what asks one question after another, where one is not enough."""
         bodies, end = self._bodies, self._duration
+        tolerance = time_tolerance(self._accuracy, end)
         is_sampled = self._accuracy.method == "sampled" and end > 0
         if is_sampled and not all(body.motion.is_at_rest for body in bodies):
-            accuracy = replace(
-                self._accuracy, time_tolerance=time_tolerance(self._accuracy, self._duration)
-            )
+            accuracy = replace(self._accuracy, time_tolerance=tolerance)
             return SampledQueries(bodies, self._trees, end, accuracy, ask)
         if not self._follows_path:
             return None
         # A bracket may consist of two: of the time the bodies are near, and of contact.
-        exact = replace(
-            self._accuracy, time_tolerance=0.5 * time_tolerance(self._accuracy, self._duration)
-        )
+        exact = replace(self._accuracy, time_tolerance=0.5 * tolerance)
         return LegQueries(bodies, self._trees, end, exact, ask)
 
     @property
@@ -223,13 +216,8 @@ class Query:
         return is_still and not self._accuracy.clearance > 0
 
     def _moving_query(self) -> kernels.ContactQuery:
-        return moving_query(
-            self._bodies,
-            self._trees,
-            self._duration,
-            self._accuracy,
-            any_contact=self._any_contact,
-        )
+        ask = partial(moving_query, any_contact=self._any_contact)
+        return ask(self._bodies, self._trees, self._duration, self._accuracy)
 
     def _answer(self) -> FirstContact:
         if self._solids is not None and self._solids.contained is not None:

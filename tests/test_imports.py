@@ -61,6 +61,7 @@ NEEDED = {
     "obbcli.arrays",
     "obbcli.body",
     "obbcli.cli",
+    "obbcli.cli.accuracy",
     "obbcli.cli.app",
     "obbcli.cli.asking",
     "obbcli.cli.boundary",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from obbcli.cli.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs, read_pair
 from obbcli.cli.options import (
@@ -20,11 +21,9 @@ from obbcli.cli.options import (
 )
 from obbcli.cli.progress import proving
 from obbcli.cli.question import (
-    AccuracyOptions,
     MotionOptions,
     PoseOptions,
     Question,
-    accuracy_options,
     motion_options,
     pose_options,
 )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 from obbcli.cli.process import SIGNALS
-from obbcli.errors import ObbError, UnresolvedError
+from obbcli.errors import MotionError, ObbError, UnresolvedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -46,6 +46,15 @@ class InternalError(ObbError):
 
 class CancelledError(ObbError):
     """Ctrl-C."""
+
+
+@contextmanager
+def usage_errors() -> Iterator[None]:
+    """Turn a refused number into a usage error: what is typed on a command line is usage."""
+    try:
+        yield
+    except MotionError as fault:
+        raise UsageError(fault.where, fault.fault, fault.remedy) from fault
 
 
 def guarded(command: Callable[[], int], words: Sequence[str]) -> int:

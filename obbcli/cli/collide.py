@@ -27,10 +27,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.body import Body
+    from obbcli.cli.accuracy import AccuracyOptions
     from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
     from obbcli.cli.options import CommonOptions
-    from obbcli.cli.question import AccuracyOptions, Question
+    from obbcli.cli.question import Question
     from obbcli.report.record import Record
     from obbcli.results import Collision
 

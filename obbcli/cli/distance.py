@@ -12,9 +12,10 @@ from obbcli.cli.options import Command
 from obbcli.cli.output import emit
 
 if TYPE_CHECKING:
+    from obbcli.cli.accuracy import AccuracyOptions
     from obbcli.cli.asking import Asked
     from obbcli.cli.inputs import Input
-    from obbcli.cli.question import AccuracyOptions, MotionOptions, Question
+    from obbcli.cli.question import MotionOptions, Question
     from obbcli.report.record import Record
 
 # The other fields of `Accuracy` say nothing about bodies at rest.

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
+from obbcli.cli.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.asking import QUESTION
-from obbcli.cli.boundary import ExitCode, UsageError
+from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
 from obbcli.cli.inputs import STDIN, keep_inputs, read_stdin
 from obbcli.cli.options import Command, common_options, option, verify_option
 from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import proving
-from obbcli.cli.question import accuracy_options, usage_errors
 from obbcli.cli.types import Finite, PathName, Whole
 from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.cli.options import CommonOptions
-    from obbcli.cli.question import AccuracyOptions
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene

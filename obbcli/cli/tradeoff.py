@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from obbcli.cli.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.asking import QUESTION, naming_options
 from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
@@ -22,11 +23,9 @@ from obbcli.cli.options import (
 from obbcli.cli.output import emit, remark, tell_interrupted
 from obbcli.cli.progress import measuring
 from obbcli.cli.question import (
-    AccuracyOptions,
     MotionOptions,
     PoseOptions,
     Question,
-    accuracy_options,
     motion_options,
     pose_options,
 )
