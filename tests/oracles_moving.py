@@ -57,22 +57,6 @@ def first_contact_triangles(
     return _first(contact_interval_triangles(a, b, velocity_a, velocity_b, duration))
 
 
-def first_contact_boxes(
-    box_a: Any, box_b: Any, velocity_a: Any, velocity_b: Any, duration: float
-) -> Fraction | None:
-    """Return the first time in [0, duration] at which two closed boxes meet, or None."""
-    return _first(contact_interval_boxes(box_a, box_b, velocity_a, velocity_b, duration))
-
-
-def first_contact_triangle_box(
-    triangle: Any, box: Any, velocity_triangle: Any, velocity_box: Any, duration: float
-) -> Fraction | None:
-    """Return the first time in [0, duration] at which triangle and box meet, or None."""
-    return _first(
-        contact_interval_triangle_box(triangle, box, velocity_triangle, velocity_box, duration)
-    )
-
-
 def _first(interval: Interval | None) -> Fraction | None:
     return None if interval is None else interval[0]
 

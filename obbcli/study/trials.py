@@ -108,14 +108,6 @@ class Trial:
         """Whether the answer is proven, all of it, and not only found to be right here."""
         return self.answer.status is not Status.UNRESOLVED and not self.answer.approximate
 
-    @property
-    def claimed_width(self) -> float | None:
-        """The width of its bracket, s; None where it has none or it is not proven."""
-        bounds = self.answer.time_bounds
-        if bounds is None or bounds[1] is None or self.answer.evidence == "sampled":
-            return None
-        return bounds[1] - bounds[0]
-
 
 class Unreached(NamedTuple):
     """A setting that was not measured, and why."""
