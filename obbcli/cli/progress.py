@@ -98,7 +98,7 @@ def counting(*, wanted: bool) -> Iterator[Callable[[float, int], None]]:
             begun[:] = begun or [share]
             seconds = time.monotonic() - start
             done = share - begun[0]
-            left = f", {seconds * (1 - share) / done:,.0f} s left" if done > 0 else ""
+            left = _time_left(seconds, done, 1 - share)
             text = f"{rows:,} rows, {rows / max(seconds, 1e-9):,.0f} a second{left}"
             progress.update(task, completed=share, description=text)
 
@@ -125,7 +125,7 @@ def trying(count: int, *, wanted: bool) -> Iterator[Callable[[int, str], None]]:
 
         def show(done: int, name: str) -> None:
             seconds = time.monotonic() - start
-            left = f", {seconds * (count - done) / done:,.0f} s left" if done else ""
+            left = _time_left(seconds, done, count - done)
             text = f"{done} of {count}{left}: {name}"
             progress.update(task, completed=done, description=text)
 
@@ -156,6 +156,11 @@ def measuring(budget: float, *, wanted: bool) -> Iterator[Callable[[float, int],
             progress.update(task, total=done + left or 1.0, completed=done, description=text)
 
         yield show
+
+
+def _time_left(seconds: float, done: float, rest: float) -> str:
+    """Return how long the rest takes at the pace of what is done, once there is a pace."""
+    return f", {seconds * rest / done:,.0f} s left" if done > 0 else ""
 
 
 def _is_terminal() -> bool:

@@ -11,6 +11,8 @@ from obbcli.view.picture import Surface
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from obbcli.view.picture import Color
+
 _POINT = (224, 0, 52)
 _NORMAL = (24, 24, 30)
 # Shares of the picture's size.
@@ -26,27 +28,26 @@ def point_mark(point: NDArray[np.float64], size: float) -> Surface:
     """Return a ball around the point, in a picture of that size."""
     turns = np.linspace(0.0, np.pi, _AROUND // 2 + 1)
     profile = _BALL * size * np.stack([np.sin(turns), -np.cos(turns)], axis=1)
-    vertices, triangles = _turned(profile, np.array((0.0, 0.0, 1.0)))
-    return Surface(
-        name="contact point",
-        vertices=vertices + point,
-        triangles=triangles,
-        color=_POINT,
-        is_mark=True,
-    )
+    return _mark("contact point", _POINT, point, profile, np.array((0.0, 0.0, 1.0)))
 
 
 def normal_mark(point: NDArray[np.float64], normal: NDArray[np.float64], size: float) -> Surface:
     """Return an arrow from the point along the unit normal, in a picture of that size."""
     neck = _LENGTH - _HEAD_LENGTH
     outline = [(0.0, 0.0), (_SHAFT, 0.0), (_SHAFT, neck), (_HEAD, neck), (0.0, _LENGTH)]
-    vertices, triangles = _turned(size * np.array(outline), normal)
+    return _mark("contact normal", _NORMAL, point, size * np.array(outline), normal)
+
+
+def _mark(
+    name: str,
+    color: Color,
+    point: NDArray[np.float64],
+    profile: NDArray[np.float64],
+    axis: NDArray[np.float64],
+) -> Surface:
+    vertices, triangles = _turned(profile, axis)
     return Surface(
-        name="contact normal",
-        vertices=vertices + point,
-        triangles=triangles,
-        color=_NORMAL,
-        is_mark=True,
+        name=name, vertices=vertices + point, triangles=triangles, color=color, is_mark=True
     )
 
 

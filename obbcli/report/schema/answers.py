@@ -5,12 +5,12 @@ from __future__ import annotations
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,
-    PAIR,
     PATH_FIELDS,
     RIGID_FIELDS,
     SECONDS,
     STATUS,
     document,
+    pair_document,
 )
 from obbcli.report.schema.words import (
     AMOUNT,
@@ -54,7 +54,7 @@ def collide() -> Schema:
         "pairs": told(list_of(_PAIR_OF_TRIANGLES), "row of A, row of B, sorted; with --all-pairs"),
         "pairs_complete": told(FLAG, "whether these are all"),
     }
-    return _answer("collide", record(fields | pairs, optional=pairs), solid=_SOLID)
+    return pair_document("collide", record(fields | pairs, optional=pairs), solid=_SOLID)
 
 
 def first_contact() -> Schema:
@@ -67,7 +67,7 @@ def first_contact() -> Schema:
         ),
     }
     result = record(CONTACT_FIELDS | listed, optional=listed)
-    return _answer("first-contact", result, solid=_SOLID)
+    return pair_document("first-contact", result, solid=_SOLID)
 
 
 def distance() -> Schema:
@@ -84,19 +84,7 @@ def distance() -> Schema:
         },
     )
     ended = told(FLAG, "whether the search ended before a limit")
-    return _answer("distance", record(fields | {"complete": ended}))
-
-
-def _answer(name: str, result: Schema, **parts: Schema) -> Schema:
-    return document(
-        name,
-        PAIR,
-        motion=ref("motion"),
-        accuracy=ref("accuracy"),
-        **parts,
-        result=result,
-        stats=ref("stats"),
-    )
+    return pair_document("distance", record(fields | {"complete": ended}))
 
 
 def scene() -> Schema:

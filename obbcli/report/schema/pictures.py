@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from obbcli.report.schema.shared import CONTACT_FIELDS, PAIR, SECONDS, document
+from obbcli.report.schema.shared import CONTACT_FIELDS, SECONDS, document, pair_document
 from obbcli.report.schema.words import (
     AMOUNT,
     COUNT,
@@ -62,12 +62,8 @@ def _contact() -> Schema:
         "ghosts_of": told(list_of(word_of(("a", "b"))), "bodies that move by then"),
         "marks": told(list_of(word_of(_MARKS)), "fields of the answer that are marked"),
     }
-    return document(
+    return pair_document(
         "view",
-        PAIR,
-        motion=ref("motion"),
-        accuracy=ref("accuracy"),
+        record(CONTACT_FIELDS | {"drawn": record(drawn)}),
         solid=told(FLAG, "whether a body inside the other counts as contact"),
-        result=record(CONTACT_FIELDS | {"drawn": record(drawn)}),
-        stats=ref("stats"),
     )

@@ -156,3 +156,18 @@ def document(name: str, inputs: Schema, **parts: Schema) -> Schema:
         "inputs": inputs,
     }
     return record(head | parts)
+
+
+def pair_document(
+    name: str, result: Schema, *, stats: Schema | None = None, **parts: Schema
+) -> Schema:
+    """Return the schema of a document about A and B; `stats` are those of a query if not given."""
+    return document(
+        name,
+        PAIR,
+        motion=ref("motion"),
+        accuracy=ref("accuracy"),
+        **parts,
+        result=result,
+        stats=ref("stats") if stats is None else stats,
+    )

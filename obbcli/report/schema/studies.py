@@ -6,11 +6,10 @@ from typing import get_args
 
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
-    PAIR,
     SECONDS,
     STATUS,
     TIME_BOUNDS,
-    document,
+    pair_document,
 )
 from obbcli.report.schema.words import (
     AMOUNT,
@@ -55,7 +54,7 @@ def tradeoff() -> Schema:
     }
     budget = told(AMOUNT, "s that it was allowed")
     stats = record({"budget": budget, "seconds": SECONDS})
-    return _study("tradeoff", record(result), stats)
+    return pair_document("tradeoff", record(result), stats=stats)
 
 
 _AS_THEY_CAME = {"type": "object", "maxProperties": 0, "description": "The trees as they came."}
@@ -127,7 +126,7 @@ def stability() -> Schema:
         "families": list_of(record(_FAMILY)),
         "rows": told(list_of(record(_extreme())), "one an extreme"),
     }
-    return _study("stability", record(result), record({"seconds": SECONDS}))
+    return pair_document("stability", record(result), stats=record({"seconds": SECONDS}))
 
 
 _FAMILY = {
@@ -166,14 +165,3 @@ def _extreme() -> dict[str, Schema]:
 
 def _answered(*names: str) -> dict[str, Schema]:
     return {name: CONTACT_FIELDS[name] for name in names}
-
-
-def _study(name: str, result: Schema, stats: Schema) -> Schema:
-    return document(
-        name,
-        PAIR,
-        motion=ref("motion"),
-        accuracy=ref("accuracy"),
-        result=result,
-        stats=stats,
-    )
