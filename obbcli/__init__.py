@@ -10,6 +10,7 @@ from importlib import import_module
 # That of `typing`, whose import takes longer than all else here.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from obbcli import primitives
     from obbcli.accuracy import Accuracy
     from obbcli.blocks import triangle_pair_blocks
     from obbcli.body import Body
@@ -104,6 +105,7 @@ __all__ = [
     "distance",
     "first_contact",
     "load_mesh",
+    "primitives",
     "stability",
     "sweep",
     "tradeoff",
@@ -114,6 +116,8 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Import a public name from the module it lives in, once."""
+    if name == "primitives":
+        return import_module(f"{__name__}.{name}")  # which sets the name
     home = _HOMES.get(name)
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -178,6 +178,12 @@ def test_names_lead_to_one_object():
     assert obbcli.Pose is Pose
 
 
+def test_primitives_need_no_import_of_their_own():
+    loaded = modules_after("import obbcli; obbcli.primitives.Obb")
+
+    assert "obbcli.primitives" in loaded
+
+
 def test_unknown_names_are_refused():
     with pytest.raises(AttributeError, match="'obbcli' has no attribute 'nonsense'"):
         _ = obbcli.nonsense
