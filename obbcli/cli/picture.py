@@ -34,7 +34,8 @@ view_options = gathered(
             "--level",
             type=Whole(0),
             metavar="K",
-            help=f"Of A alone: draw its boxes at level K, 0 the root box [default: {LEVEL}].",
+            help=f"Of A alone: draw its boxes at level K, 0 the root box "
+            f"[default: {LEVEL}, or the last].",
         ),
         option(
             _PICTURE,
@@ -66,7 +67,8 @@ view_options = gathered(
             "--zoom",
             type=Finite(1),
             metavar="N",
-            help="Come N times closer to the contact, or to the middle [default: 1]; of .png.",
+            help="Come N times closer to the contact, or to the middle, 1,000,000 at most "
+            "[default: 1]; of .png.",
         ),
         option(
             _PICTURE,

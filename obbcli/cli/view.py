@@ -38,6 +38,8 @@ _NAMED = ".glb, .html or .png"
 # Formats that trimesh writes.
 _NEED_TRIMESH = (".glb", ".html")
 _MOST_GHOSTS, _MOST_PIXELS = 100, 8192
+# Closer, a step of depth is wider than a pixel, and what hides what is no longer seen.
+_MOST_ZOOM = 1_000_000
 
 
 @click.command(
@@ -120,6 +122,8 @@ def _check_look(how: ViewOptions, suffix: str) -> None:
         raise UsageError("--size", f"is beyond {_MOST_PIXELS} pixels", "take less")
     if how.ghosts is not None and how.ghosts > _MOST_GHOSTS:
         raise UsageError("--ghosts", f"is beyond {_MOST_GHOSTS}", "take less")
+    if how.zoom is not None and how.zoom > _MOST_ZOOM:
+        raise UsageError("--zoom", f"is beyond {_MOST_ZOOM:,}", "take less")
 
 
 def _refuse_questions(asked: Asked, how: ViewOptions, *, solid: bool) -> None:
@@ -152,8 +156,9 @@ def _draw_boxes(asked: Asked, how: ViewOptions, target: Path) -> Record:
         words = f"the last boxes under node {how.node}"
     else:
         level = LEVEL if how.level is None else how.level
-        choice, boxes = Choice(level, None), boxes_of_level(file.tree, level)
-        words = f"boxes of level {level}"
+        boxes = boxes_of_level(file.tree, level, or_last=how.level is None)
+        level = int(boxes.depths[0])
+        choice, words = Choice(level, None), f"boxes of level {level}"
     title = f"{_base(file)}: {words}"
     picture = tree_picture(file.tree, boxes, title)
     output = _write(picture, [title, f"{len(boxes.nodes)} boxes, colored by depth"], how, target)

@@ -71,8 +71,13 @@ class Boxes(NamedTuple):
         return corners
 
 
-def boxes_of_level(tree: ObbTree, level: int) -> Boxes:
+def boxes_of_level(tree: ObbTree, level: int, *, or_last: bool = False) -> Boxes:
     """Return the boxes of one depth. Of a tree that grows nothing below them is made.
+
+    Args:
+        tree: whose boxes.
+        level: the root is 0.
+        or_last: take the last level of a tree that does not go so deep.
 
     Raises:
         ObbError: there is none so deep.
@@ -82,6 +87,8 @@ def boxes_of_level(tree: ObbTree, level: int) -> Boxes:
         refs, boxes, deepest = tree.kernel.boxes_of_level(min(level, 2**32 - 1))
     except kernels.TreeError as fault:
         raise TreeFileError(tree.place, str(fault), "build it again") from fault
+    if not len(refs) and or_last and tree.triangle_count > 1:
+        return boxes_of_level(tree, deepest)
     if not len(refs):
         raise ObbError(f"level {level}", _nothing(tree, f"its last level is {deepest}"))
     return Boxes.of(refs, boxes)
@@ -99,7 +106,7 @@ def last_boxes_under(tree: ObbTree, node: int) -> Boxes:
     except kernels.TreeError as fault:
         raise TreeFileError(tree.place, str(fault), "build it again") from fault
     if found is None:
-        raise ObbError(f"node {node}", _nothing(tree, f"it has nodes 0 to {tree.node_count - 1}"))
+        raise ObbError(f"node {node}", _nothing(tree, "no box has this number"))
     return Boxes.of(*found[:2])
 
 

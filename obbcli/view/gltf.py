@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from obbcli.errors import ObbError
-from obbcli.view.picture import Lines
+from obbcli.view.picture import Lines, bounds_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from obbcli.pose import Pose
     from obbcli.view.picture import Picture, Surface
 
-# Beyond, float32 ends; a picture's parts are far smaller than its largest coordinate.
+# Beyond, float32 ends.
 _LARGEST, _SMALLEST = 2.0**120, 2.0**-90
+# A picture is at least this share of its largest coordinate wide: 1,024 steps of float32.
+_LEAST_SHARE = 2.0**-14
 _DIM = 0.8
 
 
@@ -28,13 +30,18 @@ def glb_bytes(picture: Picture) -> bytes:
     """Return a picture as a GLB file, in mesh units.
 
     Raises:
-        ObbError: float32 cannot hold its coordinates.
+        ObbError: float32 cannot hold its coordinates, or is too coarse for them.
     """
     largest = max(float(np.abs(part.world()).max()) for part in picture.parts)
     largest = max(largest, *(float(np.abs(part.vertices).max()) for part in picture.parts))
     if not _SMALLEST <= largest <= _LARGEST:
         fault = f"holds numbers as float32, and the largest coordinate is {largest:g}"
         raise ObbError("a GLB file", fault, "choose other units, or draw a .png or .html")
+    low, high = bounds_of(picture.parts)
+    width = float((high - low).max())
+    if width < _LEAST_SHARE * largest:
+        fault = f"holds numbers as float32, too coarse at {largest:g} for what is {width:g} wide"
+        raise ObbError("a GLB file", fault, "shift it to the origin, or draw a .png or .html")
     data: bytes = scene_of(picture).export(file_type="glb", include_normals=False)
     return data
 

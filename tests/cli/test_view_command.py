@@ -80,6 +80,17 @@ def test_level_is_3_where_none_is_given(here, obbtree):
     assert ["picture", "boxes.png", "(160", "x", "120", "pixels)"] in lines
 
 
+def test_last_level_is_drawn_of_a_tree_that_does_not_go_to_3(here, obbtree):
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    (here / "tetra.obj").write_text(corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+
+    ended = obbtree("view", "tetra.obj", *SMALL, "-o", "boxes.png", "--json")
+
+    drawn = ended.json["result"]["drawn"]
+    assert (ended.code, drawn["depths"]) == (0, [{"depth": drawn["level"], "box_count": 1}])
+    assert 0 < drawn["level"] < 3
+
+
 def test_tables_say_what_was_drawn(here, obbtree):
     ended = obbtree("view", *LINKS, "--vel-b", 1, 0, 0, "--duration", 5, *SMALL, "-o", "c.png")
 
@@ -190,6 +201,7 @@ def test_picture_that_exists_is_replaced_by_force_alone(here, obbtree):
             "'9' is not a whole number of at least 16",
         ),
         (("cube.stl", "-o", "c.png", "--size", 9000, 99), "--size: is beyond 8192 pixels"),
+        (("cube.stl", "-o", "c.png", "--zoom", 2e6), "--zoom: is beyond 1,000,000; take less"),
         (("cube.stl", "-o", "c.png", "--vel", 1, 0, 0), "--vel: is about two bodies, and there is"),
         (("cube.stl", "-o", "c.png", "--solid"), "--solid: is about two bodies, and there is no B"),
         (("cube.stl", "-o", "c.png", "--ghosts", 2), "--ghosts: is about two bodies"),

@@ -68,6 +68,21 @@ def test_boxes_of_a_level_are_those_of_the_file_and_hold_their_triangles(name):
             assert outside(box, corners, unit) < 1e-14
 
 
+def test_last_level_is_taken_where_asked_for():
+    tree = ObbTree.build(Mesh(np.eye(4, 3), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+    last = len(tree.levels) - 1
+    while not tree.levels[last].box_count:
+        last -= 1
+    single = ObbTree.build(Mesh(np.eye(3), [[0, 1, 2]]))
+
+    boxes = boxes_of_level(tree, 9, or_last=True)
+
+    np.testing.assert_array_equal(boxes.nodes, boxes_of_level(tree, last).nodes)
+    assert set(boxes_of_level(tree, 1, or_last=True).depths.tolist()) == {1}
+    with pytest.raises(ObbError, match="a single triangle needs none"):
+        boxes_of_level(single, 3, or_last=True)
+
+
 def test_lazy_tree_makes_no_box_below_the_level():
     tree = ObbTree.build(SAMPLES / "gear.stl")
 
@@ -124,7 +139,7 @@ def test_level_or_node_that_is_not_there_is_refused():
 
     with pytest.raises(ObbError, match=r"level 14: .* its last level is 13"):
         boxes_of_level(tree, 14)
-    with pytest.raises(ObbError, match=r"node 1603: .* it has nodes 0 to 1602"):
+    with pytest.raises(ObbError, match=r"node 1603: .* no box has this number$"):
         last_boxes_under(tree, 1603)
     with pytest.raises(ObbError, match=r"level 0: .* a single triangle needs none"):
         boxes_of_level(single, 0)

@@ -244,6 +244,16 @@ def test_glb_refuses_what_float32_cannot_hold(factor):
         glb_bytes(drawn(bodies)[2])
 
 
+def test_glb_refuses_what_float32_is_too_coarse_for():
+    far = np.array((1e7, 0, 0))
+    moved = [Mesh(b.shape.mesh.vertices + far, b.shape.mesh.triangles) for b in LINKS]
+    posed = [Body(b.shape, Pose(translation=far)) for b in LINKS]
+
+    for bodies in (tuple(Body(ObbTree.build(mesh)) for mesh in moved), tuple(posed)):
+        with pytest.raises(ObbError, match=r"too coarse at 1e\+07 for what is .* wide; shift it"):
+            glb_bytes(drawn(bodies)[2])
+
+
 def test_direction_is_one_from_which_the_contact_is_seen():
     fingers = sample("finger_left.off", motion=Motion((0, -10, 0))), sample("workpiece.obj")
 
