@@ -36,7 +36,7 @@ class TreeFileError(ObbError):
 
 
 class MotionError(ObbError):
-    """A pose, motion, duration or accuracy is not a usable number, or not yet answered."""
+    """A pose, motion, duration or accuracy is not a usable number, or has no meaning there."""
 
 
 class SceneError(ObbError):

@@ -37,7 +37,7 @@ class OutputError(ObbError):
 
 
 class UsageError(ObbError):
-    """The command line asks for what cannot be asked, or not yet."""
+    """The command line asks for what cannot be asked."""
 
 
 class InternalError(ObbError):
