@@ -53,13 +53,6 @@ def moving_triangle_boxes() -> st.SearchStrategy[Moving]:
     return triangle_boxes().flatmap(lambda pair: _moving(*pair, _face_edges(pair.triangle)))
 
 
-@st.composite
-def motions(draw: Draw) -> tuple[Floats, Floats, float]:
-    """Return two velocities (3,) and a duration, unrelated to any shape."""
-    velocity_a, velocity_b = draw(_velocities(np.eye(3), np.ones(3), 1.0))
-    return velocity_a, velocity_b, draw(durations())
-
-
 def durations() -> st.SearchStrategy[float]:
     """Return a finite duration: zero, dyadic, tiny, long or any."""
     dyadic = st.integers(0, 40).map(lambda n: n / 8)

@@ -264,11 +264,6 @@ def _is_in_range(pair: Pair) -> bool:
     return all(math.isfinite(number) for number in numbers)
 
 
-def _seconds(time: Fraction) -> float:
-    """Return a time as the nearest double."""
-    return float(time)
-
-
 def _cleared(pair: Pair, room: float) -> Pair:
     """Return a pair with so much more clearance, rounded up."""
     asked = pair.accuracy

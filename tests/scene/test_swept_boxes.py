@@ -18,8 +18,6 @@ from obbcli.steps import steps_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Floats = Any
-
 
 def boxes_of(body: Body, duration: float = 1.0, **accuracy: Any) -> SweptBoxes:
     """Return the boxes of one body on a mesh."""
