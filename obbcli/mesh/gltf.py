@@ -55,7 +55,8 @@ def read_gltf(source: Source) -> MeshArrays:
         raise source.error(f"is not glTF: {fault}", "export it again") from fault
     try:
         document = Document(source, content, chunk)
-        unreadable = [x for x in document.items("extensionsUsed") if x in _UNREADABLE]
+        used = document.items("extensionsUsed")
+        unreadable = [x for x in used if isinstance(x, str) and x in _UNREADABLE]
         if unreadable:
             raise NotAsExpectedError("extensionsUsed", f"{unreadable[0]} is not read")
         return _joined(list(_placed(document)))

@@ -106,8 +106,8 @@ class Document:
         """Return an accessor's values, (count, width), before any normalisation."""
         accessor = self.item("accessors", index)
         place = f"accessors[{index}]"
-        kind = _COMPONENTS.get(accessor.get("componentType", 0))
-        if kind is None or _WIDTHS.get(accessor.get("type", "")) != width:
+        kind, form = _component_in(accessor), accessor.get("type")
+        if kind is None or not isinstance(form, str) or _WIDTHS.get(form) != width:
             raise NotAsExpectedError(place, f"is not of a known type with {width} components")
         count = count_in(accessor, "count", place)
         dtype = np.dtype(kind)
@@ -132,8 +132,8 @@ class Document:
             raise NotAsExpectedError(place, "has no indices and values")
         count = count_in(sparse, "count", place)
         where, what = sparse["indices"], sparse["values"]
-        kind = _COMPONENTS.get(where.get("componentType", 0), "<f4")
-        if kind == "<f4":
+        kind = _component_in(where)
+        if kind in (None, "<f4"):
             raise NotAsExpectedError(place, "has indices of no whole type")
         rows = self._view(
             where.get("bufferView"),
@@ -223,6 +223,12 @@ class Document:
 def is_count(value: object) -> TypeGuard[int]:
     """Return whether a JSON value is a whole number that can count or index."""
     return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**53
+
+
+def _component_in(item: Json) -> str | None:
+    """Return the type that a JSON object says its numbers have, None where it says none."""
+    component = item.get("componentType")
+    return _COMPONENTS.get(component) if is_count(component) else None
 
 
 def count_in(item: Json, key: str, place: str, default: int | None = None) -> int:

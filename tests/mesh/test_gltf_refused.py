@@ -32,11 +32,18 @@ from obbcli.mesh import load_mesh_bytes
         (["accessors", 0, "byteOffset"], 4, "takes 52 bytes"),
         (["accessors", 0, "bufferView"], 9, "bufferViews: has no item 9"),
         (["accessors", 1, "componentType"], 5122, "has indices of no unsigned type"),
+        (["accessors", 0, "componentType"], {}, r"accessors\[0\]: is not of a known type"),
+        (["accessors", 1, "componentType"], [5123], r"accessors\[1\]: is not of a known type"),
+        (["accessors", 0, "type"], ["VEC3"], r"accessors\[0\]: is not of a known type"),
         (["accessors", 1, "count"], 5, "has 5 indices, not three a triangle"),
         (["bufferViews", 0, "byteLength"], 100, r"bufferViews\[0\]: reaches to byte 100"),
         (["bufferViews", 0, "byteStride"], 4, "stride 4"),
         (["buffers", 0, "byteLength"], 100, r"buffers\[0\]: claims 100 bytes, but has 60"),
-        (["extensionsUsed"], ["KHR_draco_mesh_compression"], "draco_mesh_compression is not read"),
+        (
+            ["extensionsUsed"],
+            [{}, "KHR_draco_mesh_compression"],
+            "draco_mesh_compression is not read",
+        ),
     ],
 )
 def test_glb_refuses_what_is_out_of_place_and_names_it(path, value, fault):
@@ -56,6 +63,17 @@ def test_glb_refuses_zeros_claimed_without_bytes():
     content["accessors"][0]["count"] = 10**12
 
     with pytest.raises(MeshError, match=r"claims 1000000000000 values in 60 bytes"):
+        load(content)
+
+
+@pytest.mark.parametrize("component", [None, 5126, {}, [5123]])
+def test_glb_refuses_replacements_whose_indices_are_no_whole_numbers(component):
+    content = document()
+    indices = {"bufferView": 1, "componentType": component}
+    sparse = {"count": 1, "indices": indices, "values": {"bufferView": 0}}
+    content["accessors"][0]["sparse"] = sparse
+
+    with pytest.raises(MeshError, match=r"accessors\[0\]\.sparse: has indices of no whole type"):
         load(content)
 
 
