@@ -14,6 +14,7 @@ CUBE = np.array(
     dtype=float,
 )
 POINTS = np.vstack([CUBE, [[0.5, 0.5, 2.0]]])
+TETRA = np.array([[0, 1, 2, 5], [0, 2, 3, 7]])
 HEXAHEDRON = np.arange(8).reshape(1, 8)
 
 #: Names of files with the options to write them: of those that hold surfaces, and of all.
