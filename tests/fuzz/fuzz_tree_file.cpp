@@ -58,8 +58,8 @@ File take_file(fuzz::Bytes& bytes) {
 
 obb::FileBlocks::Descriptor in_memory(std::span<const std::uint8_t> data) {
     const int number = ::memfd_create("tree", 0);
-    require(number >= 0 && ::write(number, data.data(), data.size()) ==
-                               static_cast<::ssize_t>(data.size()),
+    require(number >= 0 &&
+                ::write(number, data.data(), data.size()) == static_cast<::ssize_t>(data.size()),
             "a file can be had");
     return obb::FileBlocks::Descriptor(number);
 }
@@ -103,7 +103,9 @@ Answer ask(const File& file, std::span<const std::uint8_t> data,
             answer.pairs.assign(query.pairs().begin(), query.pairs().end());
         } else if (question == 2) {
             obb::DistanceQuery query(view, {}, view, file.pose, {});
-            query.advance(kMostPops);
+            while (query.counts().pops < kMostPops &&
+                   !query.advance(kMostPops - query.counts().pops)) {
+            }
             const obb::DistanceBounds bounds = query.bounds();
             require(bounds.low <= bounds.high, "bounds of a distance are in order");
             answer.numbers = {bounds.low, bounds.high};

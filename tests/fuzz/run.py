@@ -8,8 +8,9 @@ bounded memory and time; the input that breaks a promise is kept in `--found`. W
 from __future__ import annotations
 
 import argparse
-import contextlib
 import hashlib
+import importlib
+import pkgutil
 import resource
 import signal
 import sys
@@ -17,7 +18,7 @@ import time
 import traceback
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 FOLDER = Path(__file__).parent
 sys.path.insert(0, str(FOLDER.parent))
@@ -101,10 +102,22 @@ def keep(folder: Path, name: str, data: bytes) -> Path:
     return path
 
 
+def import_all(*packages: str) -> None:
+    """Import whole packages: what targets would import later would not be watched."""
+    for package in packages:
+        path = importlib.import_module(package).__path__
+        for found in pkgutil.walk_packages(path, f"{package}."):
+            if found.name != "obbcli.__main__":
+                importlib.import_module(found.name)
+
+
 def guided(name: str, target: Target, options: argparse.Namespace) -> None:
     """Let atheris look for inputs that reach new code; it ends the process."""
     import atheris
 
+    import_all("obbcli", "meshio")
+    # Its import hook leaves modules unwatched that come through the finder of an editable install.
+    atheris.instrument_all()
     found = options.found / f"{name}.corpus"
     found.mkdir(parents=True, exist_ok=True)
     for data in [*target.seeds(), *corpus(name)]:
@@ -133,13 +146,7 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="print the names of all targets")
     options = parser.parse_args()
     options.found = options.found.absolute()
-    instrumented: Any = contextlib.nullcontext()
-    if options.atheris:
-        import atheris
-
-        instrumented = atheris.instrument_imports(include=["obbcli", "meshio"])
-    with instrumented:
-        known = targets()
+    known = targets()
     chosen = options.names or list(known)
     if options.list:
         print("\n".join(known))

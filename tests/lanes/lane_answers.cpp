@@ -128,6 +128,8 @@ void ask_at_rest(const obb::TreeView& a, const obb::TreeView& b, const obb::Pose
           all(nearest.counts()));
 }
 
+constexpr std::uint64_t kMostPops = 20'000;
+
 void ask_moving(const obb::TreeView& a, const obb::TreeView& b, obb::Pose at, double size,
                 Random& random, int index) {
     obb::Screw here, there;
@@ -139,7 +141,8 @@ void ask_moving(const obb::TreeView& a, const obb::TreeView& b, obb::Pose at, do
     obb::ContactQueryOptions options{.duration = 2, .time_tolerance = 1e-7};
     options.clearance = index % 5 == 4 ? 0.01 * size : 0;
     obb::ContactQuery query(a, {}, here, b, at, there, options);
-    query.advance(20'000);
+    while (query.counts().pops < kMostPops && !query.advance(kMostPops - query.counts().pops)) {
+    }
     print("moving", std::array{query.lower_bound()}, all(query.counts()));
     if (const auto& found = query.contact()) {
         const obb::ContactPlace place = query.place(*found);
