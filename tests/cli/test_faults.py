@@ -35,6 +35,7 @@ class Dying:
         signal.raise_signal(signal.SIGINT)
         time.sleep(0)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # background jobs ignore it
 SIGNALS.install()
 SIGNALS.are_heard = True
 try:
