@@ -113,7 +113,8 @@ def test_a_ray_reads_the_triangles_that_it_meets(leaf_size: int, tmp_path: Path)
 
     query = kernels.ContainmentQuery(tree.kernel, Pose().kernel, points)
 
-    assert query.advance(10**6)
+    while not query.advance(10**6):
+        pass
     assert query.inside == 1
 
 
