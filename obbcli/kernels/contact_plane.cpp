@@ -15,6 +15,11 @@ namespace {
     return t[static_cast<std::size_t>(std::countr_zero(feature.points))];
 }
 
+// Coordinates of a damaged file may be no numbers, and then no vertex is extreme.
+[[nodiscard]] bool has_points(const Touch& touch) {
+    return touch.feature_a.points != 0 && touch.feature_b.points != 0;
+}
+
 } // namespace
 
 ContactPlane::ContactPlane(const Difference& u, const std::optional<Difference>& v, const Vec3& a,
@@ -27,6 +32,9 @@ ContactPlane::ContactPlane(const Difference& u, const std::optional<Difference>&
 
 std::optional<ContactPlane> ContactPlane::of_axis(const Triangle& a, const Triangle& b,
                                                   const LinearMotion& motion, const Touch& touch) {
+    if (!has_points(touch)) {
+        return std::nullopt;
+    }
     const auto edge = [](const Triangle& t, std::size_t k) {
         return Difference{t[k], t[(k + 1) % 3]};
     };
@@ -53,8 +61,8 @@ std::optional<ContactPlane> ContactPlane::of_axis(const Triangle& a, const Trian
 std::optional<ContactPlane> ContactPlane::of_motion(const Triangle& a, const Triangle& b,
                                                     const LinearMotion& motion,
                                                     const Touch& touch) {
-    if (touch.axis.kind == AxisKind::kNone || touch.feature_a.dimension != 0 ||
-        touch.feature_b.dimension != 0) {
+    if (touch.axis.kind == AxisKind::kNone || !has_points(touch) ||
+        touch.feature_a.dimension != 0 || touch.feature_b.dimension != 0) {
         return std::nullopt;
     }
     const Difference velocity{motion.velocity_b, motion.velocity_a};
