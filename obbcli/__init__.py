@@ -7,14 +7,21 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from obbcli.version import __version__
+
 # That of `typing`, whose import takes longer than all else here.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from obbcli import primitives
     from obbcli.accuracy import Accuracy
-    from obbcli.blocks import triangle_pair_blocks
-    from obbcli.body import Body
-    from obbcli.contact import Query, first_contact
+    from obbcli.answers.contact import (
+        Collision,
+        Contact,
+        Distance,
+        FirstContact,
+        QueryStats,
+        Status,
+    )
     from obbcli.errors import (
         MeshError,
         MotionError,
@@ -24,54 +31,57 @@ if TYPE_CHECKING:
         UnresolvedError,
     )
     from obbcli.mesh import Mesh, load_mesh
-    from obbcli.motion import Motion, Pose
-    from obbcli.nearest import distance
-    from obbcli.pairs import contacts
-    from obbcli.query import collide, triangle_pairs
-    from obbcli.results import Collision, Contact, Distance, FirstContact, QueryStats, Status
+    from obbcli.motion.body import Body
+    from obbcli.motion.motion import Motion
+    from obbcli.motion.pose import Pose
+    from obbcli.questions.collide import collide, triangle_pairs
+    from obbcli.questions.contacts import contacts
+    from obbcli.questions.distance import distance
+    from obbcli.questions.first_contact import Query, first_contact
+    from obbcli.questions.triangle_pairs import triangle_pair_blocks
     from obbcli.scene import Scene, SceneBody, SceneContact
-    from obbcli.study import Stability, Tradeoff, stability, tradeoff
-    from obbcli.sweeps import sweep
-    from obbcli.tree import ObbTree
-
-# A literal, because asking the installed metadata costs three times a bare interpreter's start.
-__version__ = "0.1.0"
+    from obbcli.study.stability.battery import stability
+    from obbcli.study.stability.rows import Stability
+    from obbcli.study.tradeoff.tradeoff import tradeoff
+    from obbcli.study.tradeoff.trials import Tradeoff
+    from obbcli.sweeps.sweep import sweep
+    from obbcli.tree.tree import ObbTree
 
 _HOMES = {
     "Accuracy": "accuracy",
-    "Body": "body",
-    "Collision": "verdict",
-    "Contact": "results",
-    "Distance": "results",
-    "FirstContact": "results",
+    "Body": "motion.body",
+    "Collision": "answers.collision",
+    "Contact": "answers.contact",
+    "Distance": "answers.contact",
+    "FirstContact": "answers.contact",
     "Mesh": "mesh",
     "MeshError": "errors",
-    "Motion": "motion",
+    "Motion": "motion.motion",
     "MotionError": "errors",
     "ObbError": "errors",
-    "ObbTree": "tree",
-    "Pose": "motion",
-    "Query": "contact",
-    "QueryStats": "verdict",
+    "ObbTree": "tree.tree",
+    "Pose": "motion.pose",
+    "Query": "questions.first_contact",
+    "QueryStats": "answers.collision",
     "Scene": "scene",
     "SceneBody": "scene",
     "SceneContact": "scene",
     "SceneError": "errors",
-    "Stability": "study",
-    "Status": "verdict",
-    "Tradeoff": "study",
+    "Stability": "study.stability.rows",
+    "Status": "answers.collision",
+    "Tradeoff": "study.tradeoff.trials",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
-    "collide": "query",
-    "contacts": "pairs",
-    "distance": "nearest",
-    "first_contact": "contact",
+    "collide": "questions.collide",
+    "contacts": "questions.contacts",
+    "distance": "questions.distance",
+    "first_contact": "questions.first_contact",
     "load_mesh": "mesh",
-    "stability": "study",
-    "sweep": "sweeps",
-    "tradeoff": "study",
-    "triangle_pair_blocks": "blocks",
-    "triangle_pairs": "query",
+    "stability": "study.stability.battery",
+    "sweep": "sweeps.sweep",
+    "tradeoff": "study.tradeoff.tradeoff",
+    "triangle_pair_blocks": "questions.triangle_pairs",
+    "triangle_pairs": "questions.collide",
 }
 
 __all__ = [

@@ -9,7 +9,7 @@ from tree_oracles import BLOCK, FIXED
 
 import obbcli
 from obbcli import Body, Mesh, Motion, ObbTree, Pose
-from obbcli.opened import OpenedTree
+from obbcli.tree.opened import OpenedTree
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,47 +14,20 @@ PACKAGE = ROOT / "obbcli"
 MODULES = sorted(path.relative_to(ROOT).as_posix() for path in PACKAGE.rglob("*.py"))
 KERNEL_SOURCES = sorted(
     path.relative_to(ROOT).as_posix()
-    for path in (PACKAGE / "kernels").iterdir()
+    for path in (PACKAGE / "kernels").rglob("*")
     if path.suffix in {".cpp", ".hpp"}
 )
 LONGEST_FILE = 400
 
 # Each may import those of rows above it, and of its own row as long as no circle comes of it.
 LAYERS = (
-    ("errors", "arrays", "files", "cores"),
+    ("errors", "version"),
+    ("files", "arrays", "threads", "spelling", "accuracy", "answers"),
     ("kernels",),
-    (
-        "mesh",
-        "rotation",
-        "frames",
-        "pose",
-        "motion",
-        "body",
-        "accuracy",
-        "results",
-        "verdict",
-        "primitives",
-        "treeheader",
-        "treefile",
-    ),
-    ("growth", "opened"),
-    ("treefacts",),
+    ("mesh",),
+    ("motion", "primitives"),
     ("tree",),
-    (
-        "question",
-        "relay",
-        "legs",
-        "steps",
-        "sampled",
-        "solids",
-        "touching",
-        "contact",
-        "nearest",
-        "search",
-        "pairs",
-        "blocks",
-        "query",
-    ),
+    ("questions",),
     ("scene", "sweeps", "study", "view"),
     ("report",),
     ("cli",),

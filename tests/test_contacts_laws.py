@@ -15,8 +15,8 @@ from screw_meshes import box, cube, star
 
 import obbcli
 from obbcli import Accuracy, Body, Contact, Mesh, Motion, ObbTree, Status
-from obbcli.pairs import search_contacts
-from obbcli.search import Search
+from obbcli.questions.contacts import search_contacts
+from obbcli.questions.search import Search
 
 SAMPLES = Path(__file__).resolve().parents[1] / "sample_meshes"
 MANY = 10**7

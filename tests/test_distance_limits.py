@@ -16,7 +16,7 @@ from strategies_meshes import mesh_pairs
 from tree_meshes import soup
 
 import obbcli
-from obbcli.nearest import measure
+from obbcli.questions.distance import measure
 
 SCENES = ("far", "gap_1e-1", "gap_1e-3", "interlocked", "nested", "plates", "deep")
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from oracles_rigid import rotation_matrix
 
 from obbcli import MotionError
-from obbcli.frames import euler_step, rk4_step
+from obbcli.motion.integrators import euler_step, rk4_step
 
 U = 2.0**-53
 STEPS = pytest.mark.parametrize("step", [euler_step, rk4_step])

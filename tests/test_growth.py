@@ -14,12 +14,13 @@ from scenes import POSE_CLASSES
 from tree_meshes import NASTY, bumpy_grid, needles, soup, staircase
 
 import obbcli
-from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, growth
+from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
+from obbcli.tree import growing as growth
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from obbcli.treefile import TreeArrays
+    from obbcli.tree.file import TreeArrays
 
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center", "compact")

@@ -51,57 +51,65 @@ def test_quick_commands_import_nothing_heavy(code):
 def test_bare_import_loads_no_part_of_the_package():
     loaded = modules_after("import obbcli")
 
-    assert {name for name in loaded if name.startswith("obbcli")} == {"obbcli"}
+    assert {name for name in loaded if name.startswith("obbcli")} == {"obbcli", "obbcli.version"}
 
 
 # What a question about two binary STL files needs of the package.
 NEEDED = {
     "obbcli",
     "obbcli.accuracy",
+    "obbcli.answers",
+    "obbcli.answers.collision",
     "obbcli.arrays",
-    "obbcli.body",
     "obbcli.cli",
-    "obbcli.cli.accuracy",
     "obbcli.cli.app",
-    "obbcli.cli.asking",
     "obbcli.cli.boundary",
-    "obbcli.cli.collide",
+    "obbcli.cli.commands",
+    "obbcli.cli.commands.collide",
     "obbcli.cli.inputs",
     "obbcli.cli.options",
+    "obbcli.cli.options.accuracy",
+    "obbcli.cli.options.option",
+    "obbcli.cli.options.placement",
+    "obbcli.cli.options.two_bodies",
+    "obbcli.cli.options.words",
     "obbcli.cli.output",
     "obbcli.cli.process",
     "obbcli.cli.progress",
-    "obbcli.cli.question",
-    "obbcli.cli.types",
-    "obbcli.cores",
     "obbcli.errors",
     "obbcli.files",
-    "obbcli.growth",
     "obbcli.kernels",
     "obbcli.kernels._core",
     "obbcli.mesh",
+    "obbcli.mesh.formats",
+    "obbcli.mesh.formats.sniff",
+    "obbcli.mesh.formats.stl",
+    "obbcli.mesh.formats.text",
     "obbcli.mesh.load",
     "obbcli.mesh.measure",
     "obbcli.mesh.mesh",
-    "obbcli.mesh.sniff",
     "obbcli.mesh.source",
-    "obbcli.mesh.stl",
-    "obbcli.mesh.text",
     "obbcli.mesh.topology",
     "obbcli.motion",
-    "obbcli.pose",
-    "obbcli.query",
-    "obbcli.question",
+    "obbcli.motion.body",
+    "obbcli.motion.motion",
+    "obbcli.motion.pose",
+    "obbcli.motion.rotation",
+    "obbcli.questions",
+    "obbcli.questions.border",
+    "obbcli.questions.collide",
     "obbcli.report",
     "obbcli.report.collide",
     "obbcli.report.record",
     "obbcli.report.table",
-    "obbcli.rotation",
+    "obbcli.threads",
     "obbcli.tree",
-    "obbcli.treefacts",
-    "obbcli.treefile",
-    "obbcli.treeheader",
-    "obbcli.verdict",
+    "obbcli.tree.facts",
+    "obbcli.tree.file",
+    "obbcli.tree.growing",
+    "obbcli.tree.header",
+    "obbcli.tree.tree",
+    "obbcli.version",
 }
 # And of the standard library, beside what click and NumPy load: small modules, pathlib with its
 # parts of one version or other, what gettext looks up, what finds an editable installation.
@@ -173,7 +181,7 @@ ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
 
 def test_names_lead_to_one_object():
     assert obbcli.Pose is obbcli.Pose
-    from obbcli.motion import Pose
+    from obbcli.motion.pose import Pose
 
     assert obbcli.Pose is Pose
 

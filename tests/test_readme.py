@@ -20,10 +20,11 @@ import click
 import pytest
 
 import obbcli
-from obbcli import primitives, treeheader
+from obbcli import primitives
 from obbcli.cli.app import app
 from obbcli.cli.boundary import ExitCode
 from obbcli.mesh.load import _FORMATS
+from obbcli.tree import header as treeheader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,7 @@ import pytest
 from hostile_meshes import HOSTILE
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, Query, distance, first_contact
-from obbcli.nearest import measure
+from obbcli.questions.distance import measure
 
 POPS = 4
 # Of a leaf so many triangles are looked at in one pop.

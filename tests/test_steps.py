@@ -11,14 +11,14 @@ from oracles_rigid import rigid_point
 from screw_meshes import angle_bar, box, cube, octahedron, star, tetrahedron
 
 from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status, first_contact
-from obbcli.steps import steps_of
+from obbcli.questions.legs.steps import steps_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from obbcli.relay import Leg
+    from obbcli.questions.legs.relay import Leg
 
     Path = Callable[[float], NDArray[np.float64]]
 

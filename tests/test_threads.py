@@ -16,9 +16,9 @@ from tree_oracles import FIXED
 
 import obbcli
 from obbcli import Body, Mesh, ObbTree, Pose
-from obbcli.cores import thread_count, usable_cores
 from obbcli.errors import ObbError, TreeFileError
 from obbcli.primitives import Obb, Triangle, first_contact, intersects
+from obbcli.threads import thread_count, usable_cores
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ from tree_oracles import NODE
 from obbcli import Body, Mesh, ObbTree, TreeFileError
 
 if TYPE_CHECKING:
-    from obbcli.treefile import TreeArrays
+    from obbcli.tree.file import TreeArrays
 from tree_changes import _aligned, arrays_of, as_read, inner_slot, refuses, set_field, with_nodes
 
 

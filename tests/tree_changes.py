@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from obbcli.treefile import TreeArrays
+    from obbcli.tree.file import TreeArrays
 
 
 def arrays_of(surface: Any, **options: Any) -> TreeArrays:

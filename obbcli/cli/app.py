@@ -6,8 +6,8 @@ from importlib import import_module
 
 import click
 
-from obbcli import __version__
-from obbcli.cli.options import GuardedHelp
+from obbcli.cli.options.option import GuardedHelp
+from obbcli.version import __version__
 
 # Heading: the commands under it, and their modules here; in the order a newcomer meets them.
 _GROUPS = {
@@ -84,7 +84,7 @@ class _App(GuardedHelp, click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _COMMANDS:
             return super().get_command(ctx, cmd_name)
-        module = import_module(f"obbcli.cli.{_COMMANDS[cmd_name]}")
+        module = import_module(f"obbcli.cli.commands.{_COMMANDS[cmd_name]}")
         command: click.Command = module.command
         return command
 

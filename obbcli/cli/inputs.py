@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from obbcli.mesh import Mesh
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
 
 STDIN = "-"
 _STDIN_NAME = "<stdin>"
@@ -96,7 +96,7 @@ def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
         OSError: the file cannot be read.
     """
     from obbcli.mesh import Mesh
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
 
     start = time.perf_counter()
     stamp = stamp_of(name)
@@ -123,7 +123,7 @@ def read_shape(
         OSError: the file cannot be read.
     """
     from obbcli.mesh import check_file, load_mesh, read_stream
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
 
     if name == STDIN:
         return _from_bytes(read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
@@ -144,8 +144,8 @@ def _from_bytes(
 ) -> tuple[Mesh | ObbTree, str | None]:
     """Return what a stream held: the suffix of its name tells where it is known, else its bytes."""
     from obbcli.mesh import digest_of, known_suffixes, load_mesh_bytes
-    from obbcli.tree import ObbTree
-    from obbcli.treeheader import is_tree_file
+    from obbcli.tree.header import is_tree_file
+    from obbcli.tree.tree import ObbTree
 
     if is_tree_file(data):
         tree = ObbTree.from_bytes(data, name, verify=verify)
@@ -157,7 +157,7 @@ def _from_bytes(
 
 def _is_tree(path: Path) -> bool:
     """Return whether a file is a tree, told by its name's suffix or by its first bytes."""
-    from obbcli.treeheader import MAGIC, is_tree_file
+    from obbcli.tree.header import MAGIC, is_tree_file
 
     if path.suffix.lower() == ".obbt":
         return True

@@ -7,19 +7,19 @@ import time
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from obbcli.answers.contact import Status
 from obbcli.cli.boundary import CancelledError
 from obbcli.cli.progress import proving
 from obbcli.errors import UnresolvedError
 from obbcli.report.contacts import Listing
-from obbcli.results import Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.body import Body
-    from obbcli.cli.question import Question
-    from obbcli.results import Contact, FirstContact, QueryStats
-    from obbcli.search import Search
+    from obbcli.answers.contact import Contact, FirstContact, QueryStats
+    from obbcli.cli.options.placement import Question
+    from obbcli.motion.body import Body
+    from obbcli.questions.search import Search
 
 
 def list_contacts(
@@ -44,9 +44,9 @@ def list_contacts(
     Raises:
         CancelledError: Ctrl-C.
     """
-    from obbcli.pairs import search_contacts
-    from obbcli.question import duration_of
-    from obbcli.search import Search
+    from obbcli.questions.border import duration_of
+    from obbcli.questions.contacts import search_contacts
+    from obbcli.questions.search import Search
 
     if first.status is Status.SEPARATED or first.time is None:
         return Listing([], is_complete=True), first.stats
@@ -68,7 +68,7 @@ def list_contacts(
 
 def _end_of(first: FirstContact, question: Question, duration: float) -> float:
     """Return the time up to which contacts belong to the first, s."""
-    from obbcli.question import time_tolerance
+    from obbcli.questions.border import time_tolerance
 
     assert first.time_bounds is not None
     low, high = first.time_bounds
@@ -93,8 +93,8 @@ def _with(
     spent: QueryStats, search: Search, bodies: tuple[Body, Body], seconds: float
 ) -> QueryStats:
     """Return what an answer and its list cost together."""
-    from obbcli.question import stats_of, trees_of
-    from obbcli.relay import sum_of
+    from obbcli.questions.border import stats_of, trees_of
+    from obbcli.questions.legs.relay import sum_of
 
     counts = sum_of(spent[:4], search.counts)
     return stats_of(trees_of(bodies), counts, {**spent.seconds, "contacts": seconds})

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-    from obbcli.cli.options import CommonOptions
+    from obbcli.cli.options.option import CommonOptions
     from obbcli.report.record import Record
     from obbcli.report.table import Table
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from obbcli.cli.options import gathered, option
-from obbcli.cli.types import Finite, Whole
+from obbcli.cli.options.option import gathered, option
+from obbcli.cli.options.words import Finite, Whole
 
 LEVEL = 3
 GHOSTS = 3

@@ -141,7 +141,7 @@ void SweepRow::leave_open(double low) {
     answer_.low = low;
 }
 
-// As `contact_of` in touching.py.
+// As `contact_of` in questions/describe.py.
 void SweepRow::tell(ContactQuery& query, const Contact& found) {
     const ContactPlace place = query.place(found);
     const bool by_boxes = found.evidence == Evidence::kBoxes;

@@ -1,5 +1,5 @@
-// The first contacts of one pair of trees in many motions: each as `Query` in contact.py asks it,
-// pop by pop, but for what all have in common.
+// The first contacts of one pair of trees in many motions: each as `Query` in first_contact.py asks
+// it, pop by pop, but for what all have in common.
 #pragma once
 
 #include "contact_query.hpp"

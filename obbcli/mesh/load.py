@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
+from obbcli.mesh.formats.sniff import beginning
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.sniff import beginning
 from obbcli.mesh.source import Source, check_file, checked_source, digest_of, read_source
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     """Return the mesh in a file: its suffix, in any case, says which format is expected.
 
     Triangle ids are rows of the file's faces after triangulation, in the file's order; polygons
-    become fans about their first corner, cells the faces that `boundary.surface` lists.
+    become fans about their first corner, cells the faces that `cell_surface.surface` lists.
 
     Args:
         path: the file.
@@ -134,7 +134,7 @@ def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
         known = " ".join(known_suffixes())
         fault = f"unknown mesh suffix '{suffix}'" if suffix else "has no suffix to tell its format"
         raise MeshError(place, fault, f"known are {known}")
-    module = import_module(f"obbcli.mesh.{form.module}")
+    module = import_module(f"obbcli.mesh.formats.{form.module}")
     if form.kind is not None:
         reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix.lower())
     else:
@@ -174,7 +174,7 @@ def _mesh(arrays: MeshArrays, name: str, place: str, sha256: str | None) -> Mesh
 
 def _read_binary_stl(path: Path) -> MeshArrays | None:
     """Return a binary STL file's arrays; None where reading it whole tells more, or why not."""
-    from obbcli.mesh.stl import read_binary_file
+    from obbcli.mesh.formats.stl import read_binary_file
 
     try:
         return read_binary_file(path)

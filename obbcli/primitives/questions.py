@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from obbcli import kernels
-from obbcli.cores import thread_count
 from obbcli.errors import MotionError, ObbError
 from obbcli.primitives.contacts import (
     PrimitiveContact,
@@ -17,6 +16,7 @@ from obbcli.primitives.contacts import (
     contacts_of,
 )
 from obbcli.primitives.shapes import Obb, Triangle, as_one_or_many, first_row
+from obbcli.threads import thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

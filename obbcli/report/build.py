@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from obbcli.report.record import Record
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
 
 
 class Built(NamedTuple):

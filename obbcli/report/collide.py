@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from obbcli.answers.collision import Status
 from obbcli.report.record import answer_document
 from obbcli.report.table import Table, count, length, seconds
-from obbcli.verdict import Status
 
 if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from obbcli.answers.contact import Collision
     from obbcli.report.record import Record, Setting
-    from obbcli.results import Collision
 
 _SENTENCES = {
     "separated": "no contact",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.answers.contact import Contact
 from obbcli.report.table import Table, count, point
-from obbcli.results import Contact
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,8 +9,8 @@ from obbcli.report.record import answer_document
 from obbcli.report.table import Table, point
 
 if TYPE_CHECKING:
+    from obbcli.answers.contact import Distance
     from obbcli.report.record import Record, Setting
-    from obbcli.results import Distance
 
 
 def distance_record(setting: Setting, answer: Distance, *, is_complete: bool) -> Record:

@@ -11,9 +11,9 @@ from obbcli.report.record import answer_document
 from obbcli.report.table import Table, length, point
 
 if TYPE_CHECKING:
+    from obbcli.answers.contact import FirstContact
     from obbcli.report.contacts import Listing
     from obbcli.report.record import Record, Setting
-    from obbcli.results import FirstContact
 
 _AT_HI = {
     "intersecting": "the triangles intersect",

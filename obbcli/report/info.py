@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.mesh import Mesh
-from obbcli.mesh.grain import grain_of, warnings_of
+from obbcli.mesh.quality import grain_of, warnings_of
 from obbcli.report.record import Source, document, file_sha256, finite
 from obbcli.report.table import Table, count, length, point, size
 
 if TYPE_CHECKING:
     from obbcli.report.record import Record
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
 
 _CHANGES = {
     "unchanged": "unchanged since",

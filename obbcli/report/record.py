@@ -10,17 +10,17 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from obbcli import __version__
 from obbcli.errors import ObbError
 from obbcli.files import stamp_of
+from obbcli.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
-    from obbcli.body import Body
-    from obbcli.motion import Pose
-    from obbcli.results import QueryStats
+    from obbcli.answers.contact import QueryStats
+    from obbcli.motion.body import Body
+    from obbcli.motion.pose import Pose
 
 Record: TypeAlias = dict[str, Any]
 
@@ -89,7 +89,7 @@ def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
         bodies: A and B; their shapes are trees or meshes.
         duration: s; None for the default.
     """
-    from obbcli.question import duration_of
+    from obbcli.questions.border import duration_of
 
     a, b = bodies
     return {"duration": duration_of(duration, bodies), "a": body_part(a), "b": body_part(b)}
@@ -97,7 +97,7 @@ def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
 
 def body_part(body: Body) -> Record:
     """Return pose and motion as understood; the shape is a tree or a mesh."""
-    from obbcli.motion import PathMotion
+    from obbcli.motion.motion import PathMotion
 
     pose, motion = body.pose, body.motion
     if isinstance(motion, PathMotion):

@@ -5,19 +5,19 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.body import Body
+from obbcli.answers.contact import Status
+from obbcli.motion.body import Body
 from obbcli.report.collide import triangle_tests
 from obbcli.report.contacts import contact_part
 from obbcli.report.record import Source, body_part, document, seconds_part
 from obbcli.report.table import Table, count, point, seconds
-from obbcli.results import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from obbcli.report.record import Record
-    from obbcli.scene.asked import Asked
     from obbcli.scene.bodies import Ignore
+    from obbcli.scene.pairs import Asked
     from obbcli.scene.results import SceneContact, SceneStats
 
 _COLUMNS = ("A", "B", "time [s]", "triangle of A", "triangle of B", "feature", "point")

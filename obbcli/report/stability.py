@@ -6,16 +6,16 @@ from collections import Counter
 from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.answers.contact import Contact
 from obbcli.report.collide import source_rows
 from obbcli.report.record import document, finite
 from obbcli.report.table import Table, count, seconds
-from obbcli.results import Contact
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from obbcli.report.record import Record, Setting
-    from obbcli.study import Row, Stability
+    from obbcli.study.stability.rows import Row, Stability
 
 _OUTCOMES = ("same", "agrees", "within bound", "unresolved", "refused", "broken")
 _COLUMNS = ("changed", "tried", "same bits", "agree", "in bound", "open", "refused", "broken")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from obbcli.report.record import Record, Setting
-    from obbcli.study.trials import Tradeoff, Trial, Unreached
+    from obbcli.study.tradeoff.trials import Tradeoff, Trial, Unreached
 
 # Of the duration: the errors whose prices are told.
 SHARES = (1e-3, 1e-6, 1e-9)

@@ -12,8 +12,8 @@ from obbcli.report.table import Table, count, seconds
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from obbcli.answers.contact import FirstContact
     from obbcli.report.record import Record, Setting, Source
-    from obbcli.results import FirstContact
     from obbcli.view.boxes import Boxes
     from obbcli.view.contact import Moment
 

@@ -1,7 +1,7 @@
 """Many moving bodies: every first contact between any two of them, in order of time.
 
-`files` reads scenes, `swept` bounds where bodies go, `candidates` says which may meet and not
-before when, and `earliest` refines just those, the earliest first.
+`reader` reads scenes, `swept_boxes` bounds where bodies go, `candidates` says which may meet and
+not before when, and `first_contacts` refines just those, the earliest first.
 """
 
 from __future__ import annotations

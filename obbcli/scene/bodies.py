@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from obbcli.body import Body, Shape, as_body
 from obbcli.errors import SceneError
-from obbcli.scene.keys import known_keys, nearest
+from obbcli.motion.body import Body, Shape, as_body
+from obbcli.spelling import known_keys, nearest
 
 # `{"bodies": [a, b]}`, `{"groups": [g]}` (within one group) or `{"groups": [g, h]}` (between two).
 Ignore: TypeAlias = Mapping[str, Sequence[str]]

@@ -9,9 +9,9 @@ import numpy as np
 
 from obbcli import kernels
 from obbcli.errors import SceneError
-from obbcli.question import time_tolerance
-from obbcli.scene.keys import nearest
-from obbcli.scene.swept import MARGIN, swept_boxes
+from obbcli.questions.border import time_tolerance
+from obbcli.scene.swept_boxes import MARGIN, swept_boxes
+from obbcli.spelling import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
-    from obbcli.body import Surface
+    from obbcli.motion.body import Surface
     from obbcli.scene.bodies import Ignore, SceneBody
 
 Pair = tuple[int, int]

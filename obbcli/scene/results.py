@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from obbcli.results import Contact, Status
+    from obbcli.answers.contact import Contact, Status
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import SceneError
-from obbcli.question import duration_of, whole_limit
-from obbcli.scene.asked import Asked
+from obbcli.questions.border import duration_of, whole_limit
 from obbcli.scene.bodies import as_bodies, as_ignored
-from obbcli.scene.earliest import FirstContacts
+from obbcli.scene.first_contacts import FirstContacts
+from obbcli.scene.pairs import Asked
 from obbcli.scene.shapes import Shapes
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterable
 
+    from obbcli.scene.all_contacts import AllContacts
     from obbcli.scene.bodies import Bodies, Ignore, SceneBody
-    from obbcli.scene.listed import AllContacts
 
 
 class Scene:
@@ -86,7 +86,7 @@ class Scene:
         Raises:
             SceneError: it cannot be read or is refused; the message names line or key.
         """
-        from obbcli.scene.files import read_scene
+        from obbcli.scene.reader import read_scene
 
         parts = read_scene(path)
         return cls(parts.bodies, parts.ignore, parts.duration, parts.accuracy, verify=verify)
@@ -137,7 +137,7 @@ class Scene:
                 for, which knows the first contact alone.
             SceneError, MeshError, TreeFileError, OSError: as `first_contacts`.
         """
-        from obbcli.scene.listed import AllContacts
+        from obbcli.scene.all_contacts import AllContacts
 
         most = None if limit is None else whole_limit(limit)
         return AllContacts(Asked(self, self._shapes, pairs), most)

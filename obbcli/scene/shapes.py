@@ -6,18 +6,18 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from obbcli.body import Body
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.motion import Motion, PathMotion
-from obbcli.question import pivot_of
-from obbcli.scene.heads import TreeHead
+from obbcli.motion.body import Body
+from obbcli.motion.motion import Motion, PathMotion
+from obbcli.questions.border import pivot_of
 from obbcli.scene.results import BodyStats
-from obbcli.tree import ObbTree, begins_as_tree
+from obbcli.tree.head import TreeHead
+from obbcli.tree.tree import ObbTree, begins_as_tree
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from obbcli.body import Shape
+    from obbcli.motion.body import Shape
     from obbcli.scene.bodies import SceneBody
 
 

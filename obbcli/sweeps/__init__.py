@@ -3,7 +3,3 @@
 `sweep` takes and returns arrays. The command line streams rows of a file through `stream`, on this
 machine's cores or on a Dask cluster, into a results file that can be resumed.
 """
-
-from obbcli.sweeps.many import sweep
-
-__all__ = ["sweep"]

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli import kernels
-from obbcli.body import Body
-from obbcli.contact import first_contact
 from obbcli.errors import MotionError, TreeFileError
-from obbcli.question import NO_LIMIT, box_limits, out_of_range, refused, time_tolerance
-from obbcli.sweeps.answers import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
-from obbcli.touching import contact_at_start
+from obbcli.motion.body import Body
+from obbcli.questions.border import NO_LIMIT, box_limits, out_of_range, refused, time_tolerance
+from obbcli.questions.describe import contact_at_start
+from obbcli.questions.first_contact import first_contact
+from obbcli.sweeps.answer_rows import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
-    from obbcli.motion import Pose
-    from obbcli.question import Trees
-    from obbcli.sweeps.answers import Answers
+    from obbcli.motion.pose import Pose
+    from obbcli.questions.border import Trees
+    from obbcli.sweeps.answer_rows import Answers
 
     Floats = NDArray[np.float64]
     Poses = tuple[Pose, Pose]

@@ -17,19 +17,19 @@ from itertools import islice
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from obbcli import __version__
 from obbcli.errors import ObbError
-from obbcli.sweeps.blocks import answer_rows
+from obbcli.sweeps.result_lines import answer_rows
 from obbcli.sweeps.stream import Chunks
-from obbcli.tree import ObbTree
+from obbcli.tree.tree import ObbTree
+from obbcli.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from obbcli.question import Trees
-    from obbcli.sweeps.blocks import Block
-    from obbcli.sweeps.fields import Row
-    from obbcli.sweeps.questions import Setting
+    from obbcli.questions.border import Trees
+    from obbcli.sweeps.result_lines import Block
+    from obbcli.sweeps.row_fields import Row
+    from obbcli.sweeps.row_questions import Setting
 
 # s to find a scheduler, and for it to have a worker.
 _PATIENCE = 5

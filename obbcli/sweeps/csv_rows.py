@@ -6,12 +6,20 @@ import csv
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import ObbError
-from obbcli.sweeps.fields import FIELDS, VECTORS, Row, number_in, plain_vector, unknown, vector_in
+from obbcli.sweeps.row_fields import (
+    FIELDS,
+    VECTORS,
+    Row,
+    number_in,
+    plain_vector,
+    unknown,
+    vector_in,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from obbcli.sweeps.fields import Values, Vector
+    from obbcli.sweeps.row_fields import Values, Vector
 
 _AXES = ("x", "y", "z")
 _PARTS = {f"{name}_{axis}": (name, axis) for name in VECTORS for axis in _AXES}

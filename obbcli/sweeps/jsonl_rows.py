@@ -6,12 +6,12 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from obbcli.errors import ObbError
-from obbcli.sweeps.fields import FIELDS, Row, number_of, unknown, vector_of
+from obbcli.sweeps.row_fields import FIELDS, Row, number_of, unknown, vector_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.sweeps.fields import Identity, Values, Vector
+    from obbcli.sweeps.row_fields import Identity, Values, Vector
 
 
 def rows_of_jsonl(lines: Iterator[str], place: str) -> Iterator[Row]:

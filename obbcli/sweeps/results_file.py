@@ -15,15 +15,15 @@ from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from obbcli.answers.contact import Status
 from obbcli.errors import ObbError
-from obbcli.results import Status
-from obbcli.sweeps.blocks import ERROR, tallied
+from obbcli.sweeps.result_lines import ERROR, tallied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from obbcli.sweeps.blocks import Block
+    from obbcli.sweeps.result_lines import Block
 
 _NEW = "remove it, or add --force to start again"
 

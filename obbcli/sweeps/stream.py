@@ -6,15 +6,15 @@ import time
 from itertools import chain, islice
 from typing import TYPE_CHECKING
 
-from obbcli.sweeps.blocks import answer_rows
+from obbcli.sweeps.result_lines import answer_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.question import Trees
-    from obbcli.sweeps.blocks import Block
-    from obbcli.sweeps.fields import Row
-    from obbcli.sweeps.questions import Setting
+    from obbcli.questions.border import Trees
+    from obbcli.sweeps.result_lines import Block
+    from obbcli.sweeps.row_fields import Row
+    from obbcli.sweeps.row_questions import Setting
 
 # s: what an interruption may lose, and how often progress shows.
 _CHUNK_SECONDS = 0.5

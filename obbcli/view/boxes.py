@@ -15,7 +15,7 @@ from obbcli.view.picture import VIEWS, Lines, Picture, Surface, bounds_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.tree import ObbTree
+    from obbcli.tree.tree import ObbTree
     from obbcli.view.picture import Color
 
 _MESH = (222, 224, 228)

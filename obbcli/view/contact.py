@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from obbcli.answers.contact import Status
 from obbcli.mesh.measure import diagonal
-from obbcli.motion import PathMotion
-from obbcli.question import duration_of, pivot_of
-from obbcli.results import Status
+from obbcli.motion.motion import PathMotion
+from obbcli.questions.border import duration_of, pivot_of
 from obbcli.view.marks import normal_mark, point_mark
 from obbcli.view.picture import VIEWS, Lines, Picture, Surface, bounds_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.body import Body
-    from obbcli.pose import Pose
-    from obbcli.results import FirstContact
-    from obbcli.tree import ObbTree
+    from obbcli.answers.contact import FirstContact
+    from obbcli.motion.body import Body
+    from obbcli.motion.pose import Pose
+    from obbcli.tree.tree import ObbTree
     from obbcli.view.picture import Color
 
 _COLORS: dict[str, Color] = {"A": (74, 134, 196), "B": (232, 150, 62)}

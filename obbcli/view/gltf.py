@@ -16,7 +16,7 @@ from obbcli.view.picture import Lines, bounds_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.pose import Pose
+    from obbcli.motion.pose import Pose
     from obbcli.view.picture import Picture, Surface
 
 # Beyond, float32 ends.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.pose import Pose
+from obbcli.motion.pose import Pose
 from obbcli.view.camera import axes_of
 from obbcli.view.gltf import scene_of
 from obbcli.view.picture import Lines, Picture, Surface, bounds_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from obbcli.pose import Pose
+from obbcli.motion.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -36,7 +36,7 @@ def run(quick: bool) -> Iterator[Row]:
 def whole(surface: Surface, split: Any, threads: int) -> object:
     """Return a whole tree that so many threads made; the mesh's own checks are part of it."""
     from obbcli import Mesh
-    from obbcli.growth import Growth
+    from obbcli.tree.growing import Growth
 
     mesh = Mesh(surface.vertices, surface.faces)
     options = ("triangles", split, 1, None, None)

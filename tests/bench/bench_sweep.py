@@ -15,8 +15,8 @@ from scene_surfaces import blob
 
 import obbcli
 from obbcli.sweeps import cluster, stream
-from obbcli.sweeps.queries import opened
-from obbcli.sweeps.questions import Setting
+from obbcli.sweeps.query_file import opened
+from obbcli.sweeps.row_questions import Setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -13,7 +13,7 @@ from scene_of_cubes import SCENE
 from schemas import require_valid, require_valid_lines
 
 from obbcli.cli import main
-from obbcli.study import measuring
+from obbcli.study.tradeoff import measuring
 
 if TYPE_CHECKING:
     from collections.abc import Callable

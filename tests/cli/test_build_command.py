@@ -10,8 +10,9 @@ from typing import get_args
 import pytest
 from cube_files import as_input, cube, stl
 
-from obbcli import ObbTree, treeheader
-from obbcli.cli import build as build_module
+from obbcli import ObbTree
+from obbcli.cli.commands import build as build_module
+from obbcli.tree import header as treeheader
 
 
 def test_build_puts_the_tree_beside_its_mesh(here, obbtree):

@@ -114,7 +114,9 @@ def test_what_does_not_apply_is_null(capsys):
 
 
 def test_internal_error_is_one_object(here: Path, obbtree, monkeypatch):
-    monkeypatch.setattr("obbcli.query.collide", lambda *_: fail(IndexError("beyond\nall")))
+    monkeypatch.setattr(
+        "obbcli.questions.collide.collide", lambda *_: fail(IndexError("beyond\nall"))
+    )
 
     ended = obbtree("collide", "cube.stl", "apart.obj", "--json")
 

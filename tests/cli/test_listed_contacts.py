@@ -9,7 +9,7 @@ import pytest
 from cube_files import all_pairs, cube, obj
 
 from obbcli import Body, Contact, Motion, ObbTree, contacts, first_contact
-from obbcli.search import Search
+from obbcli.questions.search import Search
 
 GEARS = [
     str(Path(__file__).resolve().parents[2] / f"sample_meshes/{n}.stl") for n in ("gear", "pinion")
@@ -192,7 +192,7 @@ def test_ctrl_c_tells_what_is_proven(here, obbtree, monkeypatch):
         return look(self, proven)
 
     monkeypatch.setattr(Search, "_look", interrupted)
-    monkeypatch.setattr("obbcli.search.POPS_A_SLICE", 100)
+    monkeypatch.setattr("obbcli.questions.search.POPS_A_SLICE", 100)
 
     ended = obbtree("first-contact", *GEARS, *TURNING, "--limit", 9)
 

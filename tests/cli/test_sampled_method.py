@@ -95,8 +95,8 @@ def test_step_that_euler_cannot_follow_is_named_by_its_option(here, obbtree):
 
 def test_progress_of_samples_claims_no_proof(here, monkeypatch, obbtree):
     shown = []
-    monkeypatch.setattr("obbcli.cli.asking._LOOK", 0.0)
-    monkeypatch.setattr("obbcli.cli.asking.proving", recorder(shown))
+    monkeypatch.setattr("obbcli.cli.options.two_bodies._LOOK", 0.0)
+    monkeypatch.setattr("obbcli.cli.options.two_bodies.proving", recorder(shown))
     words = ("--translate-b", 3, 0, 0, *SAMPLED, "--steps", 5)
 
     obbtree("first-contact", "cube.stl", "touching.obj", *TURN, *words)

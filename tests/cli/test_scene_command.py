@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scene_of_cubes import SCENE, add
 
-import obbcli.scene.earliest
+import obbcli.scene.first_contacts
 from obbcli import ObbTree
 
 if TYPE_CHECKING:
@@ -226,7 +226,7 @@ def test_interrupt_prints_what_is_known(
     lists: tuple[str, ...], obbtree: Run, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     add(scene, '[[body]]\nname = "on it"\nmesh = "touching.obj"\n')
-    asks = obbcli.scene.earliest.FirstContacts._answer
+    asks = obbcli.scene.first_contacts.FirstContacts._answer
 
     def interrupted(self: Any, query: Any, *limits: Any) -> Any:
         answer = asks(self, query, *limits)
@@ -234,7 +234,7 @@ def test_interrupt_prints_what_is_known(
             raise KeyboardInterrupt
         return answer
 
-    monkeypatch.setattr(obbcli.scene.earliest.FirstContacts, "_answer", interrupted)
+    monkeypatch.setattr(obbcli.scene.first_contacts.FirstContacts, "_answer", interrupted)
 
     ended = obbtree("scene", "cell.toml", "--json", *lists)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from obbcli.study import battery
-from obbcli.study.battery import Battery
+from obbcli.study.stability import battery
+from obbcli.study.stability.battery import Battery
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
 LINKS = SAMPLES / "chain_link_a.off", SAMPLES / "chain_link_b.ply"
@@ -156,7 +156,7 @@ def test_plot_that_cannot_be_is_refused_first(here, obbtree, words, code, fault)
 
 
 def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
-    monkeypatch.setattr("obbcli.cli.stability.find_spec", lambda _: None)
+    monkeypatch.setattr("obbcli.cli.commands.stability.find_spec", lambda _: None)
 
     ended = obbtree("stability", *APART, "--plot", "held.svg")
 

@@ -17,9 +17,9 @@ from cube_files import cube, obj, stl
 from obbcli import Accuracy, ObbError, ObbTree, __version__, load_mesh
 from obbcli.cli import main
 from obbcli.sweeps import cluster
-from obbcli.sweeps.blocks import answer_rows
-from obbcli.sweeps.fields import Row
-from obbcli.sweeps.questions import Setting
+from obbcli.sweeps.result_lines import answer_rows
+from obbcli.sweeps.row_fields import Row
+from obbcli.sweeps.row_questions import Setting
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -139,7 +139,7 @@ def test_rows_are_answered_in_one_place(here, obbtree, words, told):
 
 
 def test_missing_package_is_told_by_name(here, obbtree, monkeypatch):
-    monkeypatch.setattr("obbcli.cli.sweep.find_spec", lambda _: None)
+    monkeypatch.setattr("obbcli.cli.commands.sweep.find_spec", lambda _: None)
 
     ended = obbtree(*WORDS, "-o", "out.jsonl", "--workers", "2")
 

@@ -10,8 +10,8 @@ import pytest
 from turning_cubes import TURN, TURN_TIME, asked
 
 import obbcli
-from obbcli.study.claims import Judge
-from obbcli.study.measuring import Study
+from obbcli.study.tradeoff.judge import Judge
+from obbcli.study.tradeoff.measuring import Study
 
 
 @pytest.fixture

@@ -38,7 +38,8 @@ def test_plot_is_a_whole_picture(here, obbtree, words):
 def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
     whole = importlib.util.find_spec
     monkeypatch.setattr(
-        "obbcli.cli.tradeoff.find_spec", lambda name: None if name == "matplotlib" else whole(name)
+        "obbcli.cli.commands.tradeoff.find_spec",
+        lambda name: None if name == "matplotlib" else whole(name),
     )
 
     ended = asked(obbtree, "--plot", "trade.svg")

@@ -12,7 +12,7 @@ import trimesh
 from matplotlib.image import imread
 
 from obbcli import ObbTree
-from obbcli.cli import view
+from obbcli.cli.commands import view
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
 LINKS = SAMPLES / "chain_link_a.off", SAMPLES / "chain_link_b.ply"

@@ -8,7 +8,7 @@ import trimesh
 from cell_files import CUBE, HEXAHEDRON, POINTS, SURFACE_KINDS, VOLUME_KINDS, write
 
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.mesh.boundary import UnknownCellError, surface
+from obbcli.mesh.formats.cell_surface import UnknownCellError, surface
 
 
 def volume(mesh):

@@ -12,7 +12,7 @@ import trimesh
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh import stl as stl_module
+from obbcli.mesh.formats import stl as stl_module
 
 FIRST = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]
 SECOND = [[0.0, 0, 1], [1, 0, 1], [0, 2, 1]]

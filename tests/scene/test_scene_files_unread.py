@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from obbcli import Scene, SceneError
-from obbcli.scene import files
+from obbcli.scene import reader as files
 
 if TYPE_CHECKING:
     from pathlib import Path

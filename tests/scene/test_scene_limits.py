@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from random_scenes import MESHES, random_scene
 
-import obbcli.scene.earliest
-import obbcli.scene.listed
+import obbcli.scene.all_contacts
+import obbcli.scene.first_contacts
 import obbcli.scene.shapes
 from obbcli import (
     Accuracy,
@@ -84,7 +84,7 @@ def test_interrupt_loses_nothing(at: int, lists: bool, monkeypatch: pytest.Monke
     scene = random_scene(2, count=10, width=4.0)
     whole = list(scene.contacts() if lists else scene.first_contacts())
     contacts = scene.contacts() if lists else scene.first_contacts()
-    advance = obbcli.scene.earliest.Query.advance
+    advance = obbcli.scene.first_contacts.Query.advance
     calls = itertools.count(1)
 
     def interrupted(*args: Any, **how: Any) -> Any:
@@ -92,7 +92,7 @@ def test_interrupt_loses_nothing(at: int, lists: bool, monkeypatch: pytest.Monke
             raise KeyboardInterrupt
         return advance(*args, **how)
 
-    monkeypatch.setattr(obbcli.scene.earliest.Query, "advance", interrupted)
+    monkeypatch.setattr(obbcli.scene.first_contacts.Query, "advance", interrupted)
     found = []
     with pytest.raises(KeyboardInterrupt):
         found.extend(contacts)
@@ -105,13 +105,13 @@ def test_interrupt_loses_nothing(at: int, lists: bool, monkeypatch: pytest.Monke
 def test_interrupted_list_says_up_to_when_it_is_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = Scene({"a": MESHES[0], "b": Body(MESHES[1], motion=Motion([3, 0, 0]))})
     whole = list(scene.contacts())
-    search = obbcli.scene.listed.search_contacts
+    search = obbcli.scene.all_contacts.search_contacts
 
     def interrupted(*args: Any) -> Any:
         yield from itertools.islice(search(*args), 5)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(obbcli.scene.listed, "search_contacts", interrupted)
+    monkeypatch.setattr(obbcli.scene.all_contacts, "search_contacts", interrupted)
     contacts = scene.contacts()
     found = []
     with pytest.raises(KeyboardInterrupt):

@@ -10,8 +10,8 @@ import pytest
 from random_scenes import CUBE, MESHES, random_scene
 from scene_surfaces import blob
 
-import obbcli.scene.earliest
-import obbcli.scene.listed
+import obbcli.scene.all_contacts
+import obbcli.scene.first_contacts
 import obbcli.scene.shapes
 from obbcli import (
     Accuracy,
@@ -27,7 +27,7 @@ from obbcli import (
     SceneError,
     TreeFileError,
 )
-from obbcli.scene.earliest import FirstContacts
+from obbcli.scene.first_contacts import FirstContacts
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,10 +10,10 @@ import pytest
 from random_scenes import CUBE, MESHES, random_motion
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
-from obbcli.motion import PathMotion
-from obbcli.question import trees_of
-from obbcli.scene.swept import SweptBoxes, swept_boxes
-from obbcli.steps import steps_of
+from obbcli.motion.motion import PathMotion
+from obbcli.questions.border import trees_of
+from obbcli.questions.legs.steps import steps_of
+from obbcli.scene.swept_boxes import SweptBoxes, swept_boxes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

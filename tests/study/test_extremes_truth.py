@@ -10,13 +10,13 @@ import pytest
 from oracles_moving import first_contact_triangles
 
 from obbcli import Accuracy, Body, Mesh, Motion, Status, first_contact
-from obbcli.study.battery import plan
-from obbcli.study.world import Trees, pair_of
+from obbcli.study.stability.battery import plan
+from obbcli.study.stability.world import Trees, pair_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.study.world import Pair
+    from obbcli.study.stability.world import Pair
 
     Floats = NDArray[np.float64]
 

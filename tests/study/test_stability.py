@@ -11,11 +11,11 @@ import pytest
 
 import obbcli
 from obbcli import Accuracy, Body, Motion, MotionError, Pose, Status
-from obbcli.study import battery, samples
-from obbcli.study.battery import Battery
+from obbcli.study.stability import battery, samples
+from obbcli.study.stability.battery import Battery
 
 if TYPE_CHECKING:
-    from obbcli.study.extremes import Changed
+    from obbcli.study.stability.extremes import Changed
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
 FAMILIES = [

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from obbcli import Accuracy, FirstContact, QueryStats, Status, Tradeoff
-from obbcli.study.trials import Timing, Trial, front_of
+from obbcli.study.tradeoff.trials import Timing, Trial, front_of
 
 # Few values, so that many points are equal in one coordinate or both.
 ERRORS = (None, 0.0, 1e-9, 1e-3, 0.1, 0.5, math.inf)

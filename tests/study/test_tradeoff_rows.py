@@ -13,10 +13,10 @@ from scene_surfaces import sphere
 
 import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status
-from obbcli.study import measuring
-from obbcli.study.measuring import Study
-from obbcli.study.settings import Build, Scale
-from obbcli.study.taking_turns import fair_part
+from obbcli.study.tradeoff import measuring
+from obbcli.study.tradeoff.measuring import Study
+from obbcli.study.tradeoff.settings import Build, Scale
+from obbcli.study.tradeoff.taking_turns import fair_part
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from obbcli.answers.collision import Collision
+from obbcli.answers.contact import Distance
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,
@@ -28,9 +30,7 @@ from obbcli.report.schema.words import (
     tuple_of,
     word_of,
 )
-from obbcli.results import Distance
 from obbcli.scene.results import BodyStats, SceneContact, SceneStats
-from obbcli.verdict import Collision
 
 _PAIR_OF_TRIANGLES = tuple_of(COUNT, COUNT)
 _SOLID = told(FLAG, "whether a body inside the other counts as contact")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from obbcli.mesh.grain import Grain
+from obbcli.mesh.quality import Grain
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.shared import (
     BUILD_FIELDS,
@@ -29,7 +29,7 @@ from obbcli.report.schema.words import (
     word_of,
 )
 from obbcli.report.sweep import STATUSES
-from obbcli.treefacts import Level
+from obbcli.tree.facts import Level
 
 _FAULT = told(TEXT, "what was found and what was wanted")
 _PLACE = told(TEXT, "file and line, row or byte, or option")

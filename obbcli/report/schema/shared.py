@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import get_args
 
 from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
+from obbcli.answers.collision import QueryStats, Status
+from obbcli.answers.contact import Contact
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.words import (
     AMOUNT,
@@ -25,8 +27,6 @@ from obbcli.report.schema.words import (
     tuple_of,
     word_of,
 )
-from obbcli.results import Contact
-from obbcli.verdict import QueryStats, Status
 
 _PARTS = ("vertex", "edge", "face")
 FEATURES = (*(f"{a}-{b}" for a in _PARTS for b in _PARTS), "box")

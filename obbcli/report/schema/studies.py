@@ -28,8 +28,8 @@ from obbcli.report.schema.words import (
     tuple_of,
     word_of,
 )
-from obbcli.study.rows import Outcome, Row
-from obbcli.study.trials import Timing, Trial
+from obbcli.study.stability.rows import Outcome, Row
+from obbcli.study.tradeoff.trials import Timing, Trial
 
 _COMMAND = told(TEXT, "the command line that asks with this setting")
 _ROW_NUMBER = or_null(COUNT)

@@ -1,0 +1,182 @@
+"""Whether bodies touch: status words, the yes or no, and what it cost to know, all frozen.
+
+What every question needs; the places and times of the others are in `contact`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+from obbcli.errors import UnresolvedError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    _Counts = tuple[int, int, int, int, int, int, int, int]
+    # What `Collision.at_rest` takes.
+    Found = tuple[bool, bool, float, tuple[int, int] | None, float, _Counts]
+
+# The body that lies inside the other, or a part of it does.
+Inner: TypeAlias = Literal["a", "b"]
+
+
+class Status(str, Enum):
+    """How a question ended; the values are the words of the JSON documents."""
+
+    SEPARATED = "separated"
+    """No contact in the whole closed interval: a proof, unless the answer was sampled."""
+    CONTACT = "contact"
+    """First contact at a time later than 0."""
+    OVERLAP_AT_START = "overlap_at_start"
+    """Contact at t = 0, touching included; also of bodies at rest."""
+    UNRESOLVED = "unresolved"
+    """A limit was reached before the answer was known."""
+
+    def __str__(self) -> str:
+        """Return the bare word."""
+        return self.value
+
+
+# Looking them up in the enumeration takes as long as a test of two boxes.
+_SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
+_UNRESOLVED = Status.UNRESOLVED
+_new = object.__new__
+
+
+class QueryStats(NamedTuple):
+    """What a question cost.
+
+    Attributes:
+        box_tests: pairs of boxes tested.
+        triangle_tests: pairs of triangles tested.
+        exact_triangle_tests: those of them that exact arithmetic had to decide.
+        pops: pairs taken from the queue or stack.
+        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
+            is asked for.
+        nodes_built_b: the same for B.
+        nodes_possible_a: nodes that A's tree can have.
+        nodes_possible_b: the same for B.
+        seconds: s of wall time by stage.
+    """
+
+    box_tests: int
+    triangle_tests: int
+    exact_triangle_tests: int
+    pops: int
+    nodes_built_a: int
+    nodes_built_b: int
+    nodes_possible_a: int
+    nodes_possible_b: int
+    seconds: Mapping[str, float]
+
+
+@dataclass(frozen=True, init=False)
+class Collision:
+    """Whether two bodies touch at any time asked about.
+
+    Attributes:
+        status: how the question ended. `Status.SEPARATED` is a proof unless `approximate`.
+        witness: the ids of a triangle of A and one of B that meet; None where nothing meets or
+            where boxes stand for their triangles.
+        approximate: whether boxes stood for triangles, so that contact is not proven, or the motion
+            was sampled, so that nothing is.
+        error_bound: mesh units; how far apart the surfaces can be although contact is said; of a
+            sampled answer also by how much any point's path relative to the other body was off the
+            true one. 0 where exact.
+        stats: what the question cost.
+        contained: of solids that do not touch, `"a"` where A or a connected part of it lies inside
+            B, else `"b"` where B or a part of it lies inside A. None elsewhere.
+    """
+
+    status: Status
+    witness: tuple[int, int] | None
+    approximate: bool
+    error_bound: float
+    stats: QueryStats
+    contained: Inner | None = None
+
+    def __init__(
+        self,
+        status: Status,
+        witness: tuple[int, int] | None,
+        approximate: bool,
+        error_bound: float,
+        stats: QueryStats,
+        contained: Inner | None = None,
+    ) -> None:
+        # The dataclass's own way, about its being frozen, takes longer than many a question.
+        fields = vars(self)
+        fields["status"] = status
+        fields["witness"] = witness
+        fields["approximate"] = approximate
+        fields["error_bound"] = error_bound
+        fields["stats"] = stats
+        fields["contained"] = contained
+
+    @classmethod
+    def at_rest(cls, found: Found, load: float = 0.0) -> Collision:
+        """Return what the kernels found of bodies at rest.
+
+        Args:
+            found: whether the question was answered, whether boxes met, how far apart these hold
+                what they stand for, the witness, s of wall time, and the numbers of `QueryStats`.
+            load: s of wall time that the trees took before.
+        """
+        is_complete, by_boxes, error_bound, witness, seconds, counts = found
+        status = _SEPARATED
+        if by_boxes or witness is not None:
+            status = _OVERLAP_AT_START
+        elif not is_complete:
+            status = _UNRESOLVED
+        made: Collision = _new(cls)
+        fields = made.__dict__
+        fields["status"] = status
+        fields["witness"] = witness
+        fields["approximate"] = by_boxes
+        fields["error_bound"] = error_bound
+        fields["contained"] = None
+        fields["_cost"] = counts, load, seconds
+        return made
+
+    def _stats(self) -> QueryStats:
+        cost: tuple[_Counts, float, float] = vars(self)["_cost"]
+        counts, load, seconds = cost
+        return QueryStats(*counts, {"load": load, "query": seconds})
+
+    @property
+    def collides(self) -> bool:
+        """Return whether the bodies touch.
+
+        Raises:
+            UnresolvedError: a limit was reached before the answer was known.
+        """
+        # Not by is_contact() alone: the call takes as long as a test of two boxes.
+        status = self.status
+        if status is _UNRESOLVED:
+            return is_contact(status)
+        return status is not _SEPARATED
+
+
+# Only made where they are looked at: that takes as long as many a question. Set from here, so that
+# the field has no default.
+_late = cached_property(Collision._stats)
+_late.__set_name__(Collision, "stats")
+Collision.stats = _late  # type: ignore[assignment]
+
+
+def is_contact(status: Status) -> bool:
+    """Return whether bodies touch.
+
+    Raises:
+        UnresolvedError: a limit was reached before the answer was known.
+    """
+    if status is Status.UNRESOLVED:
+        raise UnresolvedError(
+            "collides",
+            "the question stopped at a limit before its answer was known",
+            "raise max_iterations or timeout",
+        )
+    return status is not Status.SEPARATED

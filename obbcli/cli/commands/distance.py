@@ -1,0 +1,97 @@
+"""`obbtree distance`: how far apart are two bodies, and where?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from obbcli.cli.boundary import ExitCode, UsageError
+from obbcli.cli.options.option import Command
+from obbcli.cli.options.two_bodies import about_two, naming_options, with_load_time
+from obbcli.cli.output import emit
+
+if TYPE_CHECKING:
+    from obbcli.cli.inputs import Input
+    from obbcli.cli.options.accuracy import AccuracyOptions
+    from obbcli.cli.options.placement import MotionOptions, Question
+    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.report.record import Record
+
+# The other fields of `Accuracy` say nothing about bodies at rest.
+_APPLYING = frozenset(
+    ("distance_tolerance", "max_depth_a", "max_depth_b", "leaves", "max_iterations", "timeout")
+)
+
+
+@click.command(
+    "distance",
+    cls=Command,
+    short_help="How far apart are two bodies, and where?",
+    epilog="""\b
+Examples:
+  obbtree distance gear.stl shaft.obj --translate-b 0 0 12.5
+  obbtree distance part.stl clamp.obbt --distance-tolerance 1e-3 --json
+  obbtree distance a.stl b.stl --quiet
+""",
+)
+@about_two("Exit with 1 where they touch, 0 where not.")
+def command(asked: Asked) -> int:
+    """How far apart are the surfaces of A and B, and where are they nearest?
+
+    A and B are mesh files or .obbt trees; one of them may be - for standard input. The distance
+    comes with two bounds, both proven, with every rounding counted; it is 0 where the surfaces
+    touch or cross, and only there.
+    """
+    from obbcli.report.distance import distance_bare, distance_tables
+
+    _refuse_what_says_nothing(asked.motion, asked.accuracy)
+    question = asked.question()
+    files = asked.read()
+    with naming_options(question):
+        record = _ask(asked, question, files)
+    emit(record, distance_tables, asked.common, bare=distance_bare)
+    if not record["result"]["complete"]:
+        return ExitCode.UNRESOLVED
+    touches = record["result"]["distance"] == 0
+    return ExitCode.CONTACT if asked.exit_code and touches else ExitCode.ANSWERED
+
+
+def _refuse_what_says_nothing(motion: MotionOptions, accuracy: AccuracyOptions) -> None:
+    """Refuse options that other questions know: to ignore them would make the answer a lie."""
+    for name, value in motion._asdict().items():
+        if value is not None:
+            remedy = "leave it out, or see obbtree first-contact"
+            raise UsageError(_option(name), "moves bodies; the distance is that at t = 0", remedy)
+    for name in accuracy.given():
+        if name not in _APPLYING:
+            raise UsageError(_option(name), "says nothing about a distance", "leave it out")
+
+
+def _option(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def _ask(asked: Asked, question: Question, files: tuple[Input, Input]) -> Record:
+    """Put the question and return its record."""
+    from obbcli.questions.distance import measure
+    from obbcli.report.distance import distance_record
+
+    bodies = question.bodies(files)
+    answer, is_complete = measure(*bodies, question.accuracy)
+    setting = asked.setting(files, bodies, question)
+    record = distance_record(setting, answer, is_complete=is_complete)
+    return with_load_time(record, files)
+
+
+def _hide_what_says_nothing() -> None:
+    """Keep options that are only known to be refused by name out of the help."""
+    known = {_option(name) for name in (*_APPLYING, "max_depth")}
+    for param in command.params:
+        group = getattr(param, "group", "")
+        if group == "Motion" or (group == "Accuracy" and not known & set(param.opts)):
+            assert isinstance(param, click.Option)
+            param.hidden = True
+
+
+_hide_what_says_nothing()

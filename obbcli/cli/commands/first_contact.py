@@ -1,0 +1,112 @@
+"""`obbtree first-contact`: when and where do two moving bodies first touch?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from obbcli.cli.boundary import UsageError
+from obbcli.cli.options.option import Command, option
+from obbcli.cli.options.two_bodies import (
+    QUESTION,
+    about_two,
+    exit_code,
+    naming_options,
+    run,
+    with_load_time,
+)
+from obbcli.cli.options.words import Whole
+from obbcli.cli.output import emit, remark
+
+if TYPE_CHECKING:
+    from obbcli.cli.inputs import Input
+    from obbcli.cli.options.option import CommonOptions
+    from obbcli.cli.options.placement import Question
+    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.report.record import Record
+
+
+@click.command(
+    "first-contact",
+    cls=Command,
+    short_help="When and where do two moving bodies first touch?",
+    epilog="""\b
+Examples:
+  obbtree first-contact gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -6 --duration 2
+  obbtree first-contact arm.stl shelf.obbt --vel 0 0 -50 --duration 3 --json
+  obbtree first-contact lid.stl box.stl --vel 0 0 -10 --all-contacts --limit 20
+  obbtree first-contact a.stl b.stl --omega 0 0 90 --degrees --exit-code --quiet
+""",
+)
+@option(QUESTION, "--all-contacts", is_flag=True, help="List every pair that meets in it.")
+@option(
+    QUESTION,
+    "--limit",
+    type=Whole(1),
+    metavar="N",
+    help="List the first N pairs that meet, or N of --all-contacts [default: none, or all].",
+)
+@option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
+@about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
+def command(asked: Asked, **flags: Any) -> int:
+    """When do A and B first touch as they move, where, and with which triangles?
+
+    A and B are mesh files or .obbt trees; one of them may be - for standard input. The time comes
+    as a bracket: no contact before its lower end, which is proven, and contact at its upper end.
+    Ctrl-C says up to when contact is ruled out.
+    """
+    question = asked.question()
+    if question.accuracy.method == "sampled":
+        _refuse_lists(flags)
+    files = asked.read()
+    with naming_options(question):
+        record = _ask(asked, question, files, flags)
+    _show(record, asked.common)
+    return exit_code(record["result"], asked=asked.exit_code)
+
+
+def _refuse_lists(flags: dict[str, Any]) -> None:
+    """Refuse to list what sampling does not find."""
+    for name in ("all_contacts", "limit"):
+        if flags[name]:
+            fault = "lists contacts of pairs, and sampling finds the first contact alone"
+            raise UsageError(f"--{name.replace('_', '-')}", fault, "leave out --method sampled")
+
+
+def _ask(
+    asked: Asked, question: Question, files: tuple[Input, Input], flags: dict[str, Any]
+) -> Record:
+    """Put the question and return its record."""
+    from obbcli.cli.listing import list_contacts
+    from obbcli.questions.first_contact import Query
+    from obbcli.report.first_contact import first_contact_record
+
+    bodies = question.bodies(files)
+    query = Query(*bodies, question.duration, question.accuracy, solid=flags["solid"])
+    answer = run(query, question.accuracy, progress=asked.common.shows_progress)
+    listing = None
+    if flags["all_contacts"] or flags["limit"] is not None:
+        listing, stats = list_contacts(
+            bodies,
+            question,
+            answer,
+            flags["limit"],
+            is_patch=flags["all_contacts"],
+            progress=asked.common.shows_progress,
+        )
+        answer = replace(answer, stats=stats)
+    setting = asked.setting(files, bodies, question, flags["solid"])
+    return with_load_time(first_contact_record(setting, answer, listing), files)
+
+
+def _show(record: Record, common: CommonOptions) -> None:
+    """Write the answer; a list that may not be all says so."""
+    from obbcli.report.contacts import open_end
+    from obbcli.report.first_contact import first_contact_bare, first_contact_tables
+
+    emit(record, first_contact_tables, common, bare=first_contact_bare)
+    result = record["result"]
+    if not result.get("contacts_complete", True):
+        remark(f"{len(result['contacts'])} contacts are listed{open_end(result)}", common)

@@ -1,0 +1,57 @@
+"""`obbtree info`: what a mesh or tree file holds."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import click
+
+from obbcli.cli.inputs import keep_inputs, read_shape
+from obbcli.cli.options.option import Command, common_options, option, verify_option
+from obbcli.cli.options.words import PathName
+from obbcli.cli.output import emit
+
+if TYPE_CHECKING:
+    from obbcli.cli.options.option import CommonOptions
+
+
+@click.command(
+    "info",
+    cls=Command,
+    short_help="What a mesh or tree file holds.",
+    epilog="""\b
+Examples:
+  obbtree info gear.stl
+  obbtree info gear.obbt --check
+  obbtree info gear.obbt --json
+""",
+)
+@click.argument("file", metavar="FILE", type=PathName())
+@option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
+@verify_option
+@common_options()
+def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> int:
+    """Show what FILE holds: a mesh, or a tree with the mesh inside it.
+
+    Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
+    levels, how it was built, and whether the mesh file beside it has changed since. --check over a
+    mesh builds its tree and proves that.
+    """
+    from obbcli.files import stamp_of
+    from obbcli.mesh import Mesh
+    from obbcli.report.info import info_record, info_tables
+    from obbcli.report.record import file_sha256
+    from obbcli.tree.tree import ObbTree
+
+    keep_inputs(common.output, (file,))
+    start = time.perf_counter()
+    stamp = stamp_of(file)
+    shape, sha256 = read_shape(file, verify=not no_verify)
+    if check:
+        (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
+    sha256 = sha256 or file_sha256(file, stamp)
+    record = info_record(file, shape, sha256, is_checked=check)
+    record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
+    emit(record, info_tables, common)
+    return 0

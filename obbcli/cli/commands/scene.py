@@ -1,0 +1,250 @@
+"""`obbtree scene`: every first contact between many moving bodies, earliest first."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import click
+
+from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
+from obbcli.cli.inputs import STDIN, keep_inputs, read_stdin
+from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
+from obbcli.cli.options.option import Command, common_options, option, verify_option
+from obbcli.cli.options.two_bodies import QUESTION
+from obbcli.cli.options.words import Finite, PathName, Whole
+from obbcli.cli.output import emit, tell_interrupted
+from obbcli.cli.progress import proving
+from obbcli.errors import SceneError
+
+if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
+    from obbcli.cli.options.option import CommonOptions
+    from obbcli.report.record import Record, Source
+    from obbcli.report.scene import Answer
+    from obbcli.scene import Scene
+    from obbcli.scene.contact_stream import Course
+    from obbcli.scene.results import SceneContact
+
+    Stamps: TypeAlias = dict[str, tuple[int, ...] | None]
+
+_STDIN_NAME = "<stdin>"
+
+
+class _Wanted(NamedTuple):
+    """Which contacts are asked for."""
+
+    pairs: tuple[str, ...]
+    first: bool
+    all_contacts: bool
+    limit: int | None
+
+
+@click.command(
+    "scene",
+    cls=Command,
+    short_help="When do which of many moving bodies first touch?",
+    epilog="""\b
+Examples:
+  obbtree scene cell.toml
+  obbtree scene cell.toml --first --json
+  obbtree scene cell.toml --pairs gripper,part --pairs gripper,table --all-contacts
+  obbtree scene cell.toml --exit-code --quiet && echo "nothing touches"
+""",
+)
+@click.argument("file", metavar="SCENE", type=PathName())
+@option(
+    QUESTION,
+    "--pairs",
+    multiple=True,
+    metavar="A,B",
+    help="Ask about these two bodies alone; repeatable [default: all pairs].",
+)
+@option(QUESTION, "--first", is_flag=True, help="Stop at the scene's earliest contact.")
+@option(QUESTION, "--all-contacts", is_flag=True, help="List every pair of triangles that meets.")
+@option(
+    QUESTION,
+    "--limit",
+    type=Whole(1),
+    metavar="N",
+    help="List the first N contacts [default: all].",
+)
+@option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
+@option(
+    QUESTION,
+    "--exit-code",
+    is_flag=True,
+    help="Exit with 1 where bodies touch, 0 where proven apart, 4 where only sampled so.",
+)
+@option(
+    "Motion",
+    "--duration",
+    type=Finite(0),
+    metavar="T",
+    help="Ask about 0 <= t <= T, in s [default: as the file says].",
+)
+@accuracy_options
+@verify_option
+@common_options()
+def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags: Any) -> int:
+    """When do which of many moving bodies first touch, where, and with which triangles?
+
+    SCENE is a TOML or JSON file that names meshes, where they are and how they move; - stands for
+    standard input. What is given here overrides what it says. Ctrl-C prints what is known by then.
+    """
+    wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
+    _refuse_contradictions(wanted)
+    scene, source, stamps = _read(file, accuracy, flags["duration"], verify=not flags["no_verify"])
+    if wanted.all_contacts and scene.accuracy.method == "sampled":
+        fault = "lists contacts of triangles, and sampling finds the first contact alone"
+        raise UsageError("--all-contacts", fault, "ask for --method certified")
+    keep_inputs(common.output, (file, *(str(body.body.shape) for body in scene.bodies)))
+    found = _ask(scene, wanted)
+    answer = _run(found, wanted, progress=common.shows_progress)
+    # Hashes cost time, and only a document shows them.
+    record = _record(source, scene, found, answer, stamps if common.json else None)
+    _show(record, common, explains=flags["explain"])
+    return _exit_code(record["result"], asked=flags["exit_code"])
+
+
+def _refuse_contradictions(wanted: _Wanted) -> None:
+    """Refuse flags of which one would be ignored."""
+    if wanted.first:
+        for name in ("all_contacts", "limit"):
+            if getattr(wanted, name):
+                fault = "lists contacts, and --first asks for one"
+                raise UsageError(f"--{name.replace('_', '-')}", fault, "leave out one of the two")
+
+
+def _read(
+    file: str, options: AccuracyOptions, duration: float | None, *, verify: bool
+) -> tuple[Scene, Source, Stamps]:
+    """Return the scene as asked about, its file, and what the files of its bodies are by now."""
+    from obbcli.files import stamp_of
+    from obbcli.mesh import digest_of
+    from obbcli.report.record import Source
+    from obbcli.scene import Scene
+    from obbcli.scene.reader import parse_scene, read_bytes
+
+    name = _STDIN_NAME if file == STDIN else file
+    data = read_stdin() if file == STDIN else read_bytes(Path(file), name)
+    folder = Path() if file == STDIN else Path(file).parent
+    parts = parse_scene(data, name, folder, is_json=name.lower().endswith(".json"))
+    paths = {str(body.body.shape) for body in parts.bodies}
+    stamps = {path: stamp_of(path) for path in paths}
+    scene = Scene(
+        parts.bodies,
+        parts.ignore,
+        parts.duration if duration is None else duration,
+        _accuracy(parts.accuracy, options),
+        verify=verify,
+    )
+    return scene, Source(file, digest_of(data)(), None), stamps
+
+
+def _accuracy(accuracy: Accuracy, options: AccuracyOptions) -> Accuracy:
+    """Return what a file asks for, with what options say instead."""
+    given = options.given()
+    with usage_errors():
+        asked = replace(accuracy, **given)
+    for name in ("integrator", "steps"):
+        if name in given and asked.method != "sampled":
+            raise UsageError(f"--{name}", "has a meaning with --method sampled alone")
+    return asked
+
+
+def _ask(scene: Scene, wanted: _Wanted) -> Course:
+    """Return the question, not yet advanced."""
+    names = {body.name for body in scene.bodies}
+    pairs = [_pair(text, names) for text in wanted.pairs] or None
+    try:
+        if wanted.all_contacts:
+            return scene.contacts(wanted.limit, pairs)
+        return scene.first_contacts(wanted.first, pairs)
+    except SceneError as fault:
+        # What is typed is usage.
+        raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault
+
+
+def _pair(text: str, names: set[str]) -> tuple[str, str]:
+    """Return the two names in a word. Names may have commas."""
+    parts = text.split(",")
+    ways = [(",".join(parts[:k]), ",".join(parts[k:])) for k in range(1, len(parts))]
+    known = [way for way in ways if names.issuperset(way)] or ways
+    if len(known) != 1:
+        fault = "names no two bodies" if not ways else "can be read in several ways"
+        raise UsageError(f"--pairs {text}", fault, "write --pairs A,B")
+    return known[0]
+
+
+def _run(found: Course, wanted: _Wanted, *, progress: bool) -> Answer:
+    """Return the answer; after Ctrl-C what is known by then."""
+    from obbcli.answers.contact import Status
+    from obbcli.report.scene import Answer
+
+    contacts: list[SceneContact] = []
+    known = 0
+    is_interrupted = False
+    with proving(found.asked.duration, "all known before", wanted=progress) as show:
+        while not found.is_finished and (wanted.limit is None or known < wanted.limit):
+            try:
+                one = found.advance()
+                show(found.time)
+            except KeyboardInterrupt:
+                if is_interrupted:
+                    raise
+                is_interrupted = True
+                found.stop()
+                continue
+            if one is not None:
+                contacts.append(one)
+                known += one.status is not Status.UNRESOLVED
+    is_cut = (wanted.limit is not None and known == wanted.limit) or (wanted.first and known > 0)
+    is_open = any(one.status is Status.UNRESOLVED for one in contacts)
+    return Answer(contacts, found.stats, not (is_cut or is_open), is_interrupted)
+
+
+def _record(
+    source: Source,
+    scene: Scene,
+    found: Course,
+    answer: Answer,
+    stamps: Stamps | None,
+) -> Record:
+    """Return the record of an answer, with hashes where there are stamps to hold them against.
+
+    Raises:
+        ObbError: a body's file is not what it was when the scene was read.
+    """
+    from obbcli.report.record import Source, file_sha256
+    from obbcli.report.scene import mesh_paths, scene_record
+
+    asked = found.asked
+    stats = zip(asked.bodies, answer.stats.bodies, strict=True)
+    triangles = {str(body.body.shape): part.triangle_count for body, part in stats}
+    meshes = []
+    for path in mesh_paths(asked):
+        digest = None if stamps is None else file_sha256(path, stamps[path])
+        meshes.append(Source(path, digest, triangles[path]))
+    is_hashed = stamps is not None
+    return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
+
+
+def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:
+    """Write the answer."""
+    from obbcli.report.scene import explained_tables, scene_bare, scene_tables
+
+    emit(record, explained_tables if explains else scene_tables, common, bare=scene_bare)
+    result = record["result"]
+    if result["interrupted"]:
+        tell_interrupted(f"unresolved pairs: {len(result['unresolved'])}", common)
+
+
+def _exit_code(result: Record, *, asked: bool) -> int:
+    if result["interrupted"]:
+        return ExitCode.INTERRUPTED
+    is_separated = result["status"] == "separated"
+    if result["unresolved"] or (asked and is_separated and result["approximate"]):
+        return ExitCode.UNRESOLVED
+    return ExitCode.CONTACT if asked and not is_separated else ExitCode.ANSWERED

@@ -1,0 +1,140 @@
+"""`obbtree stability`: the same question at the extremes, and which answers hold."""
+
+from __future__ import annotations
+
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from obbcli.cli.boundary import ExitCode, OutputError, UsageError, writing
+from obbcli.cli.inputs import keep_inputs
+from obbcli.cli.options.option import Command, option
+from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options
+from obbcli.cli.options.words import PathName
+from obbcli.cli.output import emit, tell_interrupted
+from obbcli.cli.progress import trying
+from obbcli.files import write_whole
+
+if TYPE_CHECKING:
+    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.report.record import Record
+    from obbcli.report.stability import Studied
+    from obbcli.study.stability.battery import Battery
+
+
+_PLOTS = (".svg", ".png")
+
+
+@click.command(
+    "stability",
+    cls=Command,
+    short_help="Which answers hold when the question is taken to extremes?",
+    epilog="""\b
+Examples:
+  obbtree stability gear.stl pinion.stl --omega 0 0 0.1
+  obbtree stability arm.stl shelf.obbt --vel 0 0 -50 --duration 3 --json
+  obbtree stability arm.stl shelf.obbt --vel 0 0 -50 --plot held.svg
+""",
+)
+@option(
+    QUESTION,
+    "--plot",
+    type=PathName(),
+    metavar="FILE",
+    help="Draw what held into FILE, .svg or .png; needs obbtree[plot].",
+)
+@about_two("Exit with 1 where they touch, 0 where proven apart; 6 where anything is broken.")
+def command(asked: Asked, plot: str | None) -> int:
+    """Ask first-contact of A and B again at the extremes, and say which answers hold.
+
+    The world is scaled to the ends of the doubles, shifted, turned and hurried; bodies swapped,
+    triangles reordered, split, repeated and reversed; time scaled and cut; bodies spun and tilted;
+    digits taken away. What may change is bounded by what that did to the input, and beyond it
+    nothing may: exit code 6 says that something did, which is a defect of obbtree. Ctrl-C keeps
+    what was done.
+    """
+    question = asked.question()
+    if question.accuracy.method == "sampled":
+        fault = "proves nothing that could be held to"
+        raise UsageError("--method sampled", fault, "ask for --method certified")
+    if plot is not None:
+        _check_plot(plot, asked)
+    files = asked.read()
+    with naming_options(question):
+        from obbcli.study.stability.battery import Battery
+
+        bodies = question.bodies(files)
+        battery = Battery(*bodies, question.duration, question.accuracy)
+        studied = _run(battery, progress=asked.common.shows_progress)
+        setting = asked.setting(files, bodies, question)
+    from obbcli.report.stability import stability_bare, stability_record, stability_tables
+
+    record = stability_record(setting, studied)
+    if plot is not None:
+        _draw(record, plot)
+    emit(record, stability_tables, asked.common, bare=stability_bare)
+    if studied.is_interrupted:
+        not_tried = battery.count - len(battery.rows)
+        tell_interrupted(f"not tried: {not_tried} extremes", asked.common)
+    return _exit_code(record["result"], asked=asked.exit_code)
+
+
+def _check_plot(name: str, asked: Asked) -> None:
+    """Refuse a plot that could not be drawn, before anything is asked.
+
+    Raises:
+        UsageError: it is of another kind, over another file of the command, or matplotlib is not
+            there.
+        OutputError: its folder is not there.
+    """
+    if Path(name).suffix.lower() not in _PLOTS:
+        raise UsageError(f"--plot {name}", "is no .svg or .png file", "name one that is")
+    output = asked.common.output
+    if output is not None and Path(name).resolve() == output.resolve():
+        raise UsageError(f"--plot {name}", "is where the answer goes", "name another file")
+    if find_spec("matplotlib") is None:
+        remedy = "install it: pip install 'obbtree[plot]'"
+        raise UsageError("--plot", "needs the package matplotlib", remedy)
+    if not Path(name).resolve().parent.is_dir():
+        raise OutputError(name, "cannot be written: its folder is not there", "create it first")
+    keep_inputs(Path(name), (asked.a, asked.b))
+
+
+def _draw(record: Record, name: str) -> None:
+    """Write the picture, whole or not at all."""
+    from obbcli.report.plots.stability import stability_plot
+
+    picture = stability_plot(record, Path(name).suffix.lower().removeprefix("."))
+    with writing(name):
+        write_whole(Path(name), picture)
+
+
+def _run(battery: Battery, *, progress: bool) -> Studied:
+    """Try all extremes; after Ctrl-C what was tried by then."""
+    from obbcli.report.stability import Studied
+
+    start = time.perf_counter()
+    is_interrupted = False
+    with trying(battery.count, wanted=progress) as show:
+        try:
+            while not battery.is_finished:
+                show(len(battery.rows), battery.next_extreme)
+                battery.advance()
+        except KeyboardInterrupt:
+            is_interrupted = True
+    spent = time.perf_counter() - start
+    return Studied(battery.result(), battery.count, is_interrupted, spent)
+
+
+def _exit_code(result: Record, *, asked: bool) -> int:
+    if result["interrupted"]:
+        return ExitCode.INTERRUPTED
+    if result["broken_count"]:
+        return ExitCode.BROKEN
+    status = result["answer"]["status"]
+    if status == "unresolved":
+        return ExitCode.UNRESOLVED
+    return ExitCode.CONTACT if asked and status != "separated" else ExitCode.ANSWERED

@@ -1,0 +1,173 @@
+"""The question about two bodies that options ask: placement and motion; `accuracy` has the rest."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from obbcli.cli.boundary import UsageError, usage_errors
+from obbcli.cli.options.option import gathered, option, vector
+from obbcli.cli.options.words import Finite
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.cli.inputs import Input
+    from obbcli.cli.options.accuracy import AccuracyOptions
+    from obbcli.motion.body import Body
+    from obbcli.motion.motion import Motion
+    from obbcli.motion.pose import Pose
+
+    Numbers: TypeAlias = tuple[float, float, float]
+
+
+class PoseOptions(NamedTuple):
+    """Where A and B are at t = 0."""
+
+    translate: Numbers | None
+    rotate: Numbers | None
+    translate_b: Numbers | None
+    rotate_b: Numbers | None
+    degrees: bool
+
+    def poses(self) -> tuple[Pose, Pose]:
+        """Return the poses of A and B."""
+        return self._pose(self.rotate, self.translate), self._pose(self.rotate_b, self.translate_b)
+
+    def _pose(self, rotate: Numbers | None, translate: Numbers | None) -> Pose:
+        from obbcli.motion.motion import Pose, rotation_matrix
+
+        with usage_errors():
+            turn = None if rotate is None else rotation_matrix(rotate, degrees=self.degrees)
+            return Pose(turn, translate)
+
+
+_POSE = "Placement at t = 0"
+pose_options = gathered(
+    "pose",
+    PoseOptions,
+    (
+        vector(_POSE, "--translate", "Shift A, in mesh units."),
+        vector(_POSE, "--rotate", "Turn A about the origin first: axis times angle, in rad."),
+        vector(_POSE, "--translate-b", "Shift B, in mesh units."),
+        vector(_POSE, "--rotate-b", "Turn B about the origin first: axis times angle, in rad."),
+        option(_POSE, "--degrees", is_flag=True, help="Angles are in degrees, spins in degrees/s."),
+    ),
+)
+
+
+class MotionOptions(NamedTuple):
+    """How A and B move, and for how long."""
+
+    vel: Numbers | None
+    omega: Numbers | None
+    pivot: Numbers | None
+    vel_b: Numbers | None
+    omega_b: Numbers | None
+    pivot_b: Numbers | None
+    duration: float | None
+
+    def motions(self, *, degrees: bool) -> tuple[Motion, Motion]:
+        """Return the motions of A and B.
+
+        Raises:
+            UsageError: a pivot of a body that is not told to turn.
+        """
+        for suffix, pivot, omega in (
+            ("", self.pivot, self.omega),
+            ("-b", self.pivot_b, self.omega_b),
+        ):
+            if pivot is not None and omega is None:
+                remedy = f"add --omega{suffix}, or leave it out"
+                raise UsageError(f"--pivot{suffix}", "is where an axis of rotation passes", remedy)
+        return (
+            self._motion(self.vel, self.omega, self.pivot, degrees),
+            self._motion(self.vel_b, self.omega_b, self.pivot_b, degrees),
+        )
+
+    def _motion(
+        self, vel: Numbers | None, omega: Numbers | None, pivot: Numbers | None, degrees: bool
+    ) -> Motion:
+        from obbcli.motion.motion import Motion
+
+        if omega is not None and degrees:
+            omega = (math.radians(omega[0]), math.radians(omega[1]), math.radians(omega[2]))
+        with usage_errors():
+            return Motion(vel, omega, pivot)
+
+
+_MOTION = "Motion"
+motion_options = gathered(
+    "motion",
+    MotionOptions,
+    (
+        vector(_MOTION, "--vel", "Linear velocity of A, in mesh units/s."),
+        vector(
+            _MOTION, "--omega", "Angular velocity of A, world frame: axis times spin, in rad/s."
+        ),
+        vector(
+            _MOTION,
+            "--pivot",
+            "Where A's axis passes at t = 0, in mesh units [default: A's centroid].",
+        ),
+        vector(_MOTION, "--vel-b", "Linear velocity of B, in mesh units/s."),
+        vector(
+            _MOTION, "--omega-b", "Angular velocity of B, world frame: axis times spin, in rad/s."
+        ),
+        vector(
+            _MOTION,
+            "--pivot-b",
+            "Where B's axis passes at t = 0, in mesh units [default: B's centroid].",
+        ),
+        option(
+            _MOTION,
+            "--duration",
+            type=Finite(0),
+            metavar="T",
+            help="Ask about 0 <= t <= T, in s [default: 1 where a body moves, else 0].",
+        ),
+    ),
+)
+
+
+def _names(options: PoseOptions | MotionOptions) -> list[str]:
+    """Return the options that were given values."""
+    values = options._asdict().items()
+    return [f"--{name.replace('_', '-')}" for name, value in values if value not in (None, False)]
+
+
+class Question(NamedTuple):
+    """What is asked about two bodies, all of it understood and checked before a file is read."""
+
+    poses: tuple[Pose, Pose]
+    motions: tuple[Motion, Motion]
+    duration: float | None
+    accuracy: Accuracy
+    given: Mapping[str, Sequence[str]]
+
+    @classmethod
+    def of(cls, pose: PoseOptions, motion: MotionOptions, accuracy: AccuracyOptions) -> Question:
+        """Return the question that options ask; `given` names the options of pose and motion.
+
+        Raises:
+            UsageError: a number is refused, or an option has no meaning with the others.
+        """
+        motions = motion.motions(degrees=pose.degrees)
+        given = {"pose": _names(pose), "motion": _names(motion), "steps": ["--steps"]}
+        return cls(pose.poses(), motions, motion.duration, accuracy.accuracy(), given)
+
+    @property
+    def moves(self) -> bool:
+        """Return whether anything moves while the question runs."""
+        return self.duration != 0 and not all(motion.is_at_rest for motion in self.motions)
+
+    def bodies(self, files: tuple[Input, Input]) -> tuple[Body, Body]:
+        """Return A and B as they are placed and move."""
+        from obbcli.motion.body import Body
+
+        a, b = (
+            Body(file.tree, pose, motion)
+            for file, pose, motion in zip(files, self.poses, self.motions, strict=True)
+        )
+        return a, b

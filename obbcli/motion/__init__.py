@@ -1,0 +1,1 @@
+"""What a body is and where it goes: poses, motions, bodies, integrators of sampled motion."""

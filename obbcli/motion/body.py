@@ -1,0 +1,95 @@
+"""What questions are asked about: a `Body`, a shape with its place and motion."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol, TypeAlias
+
+from obbcli import kernels
+from obbcli.motion.motion import Motion, PathMotion, refuse
+from obbcli.motion.pose import Pose
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_AS_LOADED = Pose()
+_AT_REST = Motion()
+
+
+class Surface(Protocol):
+    """What a body can be made of: an `ObbTree` or a `Mesh`."""
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lower and upper corner, (2, 3)."""
+
+    @property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """The default pivot, unposed, (3,)."""
+
+
+Shape: TypeAlias = Surface | str | os.PathLike[str]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Body:
+    """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
+
+    Args:
+        shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        pose: where it is at t = 0; that of the motion where this goes through poses.
+        motion: how it moves from there.
+
+    Raises:
+        MotionError: an argument is of another kind, or a motion through poses comes with another
+            pose.
+
+    Example:
+        >>> body = Body("sample_meshes/nut.obj", Pose(translation=[0, 0, 1]))
+        >>> body.pose.translation.tolist()
+        [0.0, 0.0, 1.0]
+    """
+
+    shape: Shape
+    pose: Pose
+    motion: Motion
+
+    def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
+        # Told by what it has: trees belong to a layer above this one. By its type, since a tree's
+        # bounds cost as much as a whole mesh, and may find it damaged.
+        if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
+            refuse("shape", shape, "pass an ObbTree, a Mesh or a path")
+        if not isinstance(pose, Pose):
+            refuse("pose", pose, "pass a Pose")
+        if not isinstance(motion, Motion):
+            refuse("motion", motion, "pass a Motion")
+        if isinstance(motion, PathMotion):
+            pose = motion.first_pose(pose)
+        # The dataclass is frozen to everybody else, and its own way takes three times as long.
+        fields = vars(self)
+        fields["shape"] = shape
+        fields["pose"] = pose
+        fields["motion"] = motion
+
+    @cached_property
+    def placed(self) -> kernels.Placed | None:
+        """The tree at its pose as the kernels see it; None where the shape is no tree yet."""
+        tree = getattr(self.shape, "kernel", None)
+        return None if tree is None else kernels.Placed(tree, self.pose.kernel)
+
+    @cached_property
+    def at_rest(self) -> kernels.Placed | None:
+        """The same of a body that does not move; None of others."""
+        return self.placed if self.motion.is_at_rest else None
+
+
+def as_body(shape: Body | Shape) -> Body:
+    """Return a `Body` as it is, and anything else at rest where its file put it.
+
+    Raises:
+        MotionError: neither a body nor a tree, a mesh or a path.
+    """
+    return shape if isinstance(shape, Body) else Body(shape)

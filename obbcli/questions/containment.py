@@ -1,0 +1,144 @@
+"""Closed surfaces as solids: does a part of one body lie inside the other at t = 0?
+
+Called by `Query` where `solid` is asked.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli import kernels
+from obbcli.answers.contact import Contact, Status
+from obbcli.errors import MeshError
+from obbcli.mesh.topology import bad_seams
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from obbcli.answers.contact import Inner
+    from obbcli.mesh import Mesh
+    from obbcli.motion.body import Body
+    from obbcli.questions.border import Trees
+
+Counts = tuple[int, int, int, int]
+
+
+class Containment:
+    """The question whether a part of one body lies inside the other, their surfaces apart at t = 0.
+
+    Inside is where the surface winds about a point a number of times other than zero: whether all
+    of it is turned outwards or inwards, and also where parts overlap, but not in a hollow whose
+    surface is turned against the outer one. Exact for the posed vertices.
+
+    One point of each connected part of either surface decides. A winding number changes only where
+    a surface passes, so it is the same all over a part that does not touch the surface. For the
+    same reason t = 0 is the only time to ask at: as long as moving surfaces do not touch, the
+    winding number of one about a point of the other is a whole number that depends continuously on
+    time. A body that gets inside another touches it first.
+
+    Args:
+        bodies: A and B as they are at t = 0.
+        trees: theirs.
+        at_start: whether their surfaces touch at t = 0; advanced where that is not known yet.
+
+    Raises:
+        MeshError: a mesh is not watertight; the message says where.
+        TreeFileError: a tree file is damaged.
+    """
+
+    def __init__(
+        self, bodies: tuple[Body, Body], trees: Trees, at_start: kernels.StaticQuery
+    ) -> None:
+        for name, tree in zip("AB", trees, strict=True):
+            _require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
+        self._bodies = bodies
+        self._trees = trees
+        self._at_start = at_start
+        self._done: Counts = (0, 0, 0, 0)
+        self._inner: Inner = "a"
+        self._points: NDArray[np.float64] | None = None
+        self._query: kernels.ContainmentQuery | None = None
+        self._contained: Inner | None = None
+
+    @property
+    def contained(self) -> Inner | None:
+        """The body of which a part was found inside the other; A's parts are looked at first."""
+        return self._contained
+
+    def advance(self, pops: int) -> bool:
+        """Go on for so many steps of each part; return whether the answer is complete."""
+        if not self._at_start.advance(pops):
+            return False
+        while self._contained is None and not self._at_start.is_contact:
+            if self._query is None:
+                self._points, self._query = self._ask()
+            if not self._query.advance(pops):
+                return False
+            if self._query.inside is not None:
+                self._contained = self._inner
+            elif self._inner == "b":
+                break
+            else:
+                self._done, self._query, self._inner = self._query.counts(), None, "b"
+        return True
+
+    @property
+    def counts(self) -> Counts:
+        """Box tests, triangle tests, exact ones and pops so far."""
+        done = self._done
+        now = (0, 0, 0, 0) if self._query is None else self._query.counts()
+        return done[0] + now[0], done[1] + now[1], done[2] + now[2], done[3] + now[3]
+
+    def answer(self) -> Contact:
+        """Return the contact at t = 0 of a body inside the other: no triangles, but a point."""
+        assert self._query is not None
+        assert self._points is not None
+        x, y, z = (self._points[self._query.inside] + 0.0).tolist()
+        return Contact(
+            status=Status.OVERLAP_AT_START,
+            time=0.0,
+            time_bounds=(0.0, 0.0),
+            point=(x, y, z),
+            contained=self._contained,
+        )
+
+    def _ask(self) -> tuple[NDArray[np.float64], kernels.ContainmentQuery]:
+        """Return one posed point of each part of the inner body, and the question about them."""
+        (a, b), (tree_a, tree_b) = self._bodies, self._trees
+        inner, tree, outer, other = (
+            (a, tree_a, b, tree_b) if self._inner == "a" else (b, tree_b, a, tree_a)
+        )
+        mesh = tree.mesh
+        points = inner.pose.apply(mesh.vertices[mesh.triangles[mesh.part_rows, 0]])
+        return points, kernels.ContainmentQuery(other.kernel, outer.pose.kernel, points)
+
+
+def _require_watertight(mesh: Mesh, where: str) -> None:
+    if mesh.is_watertight:
+        return
+    found = bad_seams(mesh.corner_ids)
+    if found is None:
+        fault = "all its triangles are collapsed to edges or points"
+    else:
+        count, seam = found
+        ends = mesh.vertices[mesh.triangles[seam.triangle]]
+        start, end = (tuple(ends[(seam.corner + k) % 3].tolist()) for k in (0, 1))
+        edges = "1 edge does" if count == 1 else f"{count} edges do"
+        fault = (
+            f"{edges} not join two triangles turned alike, such as that from {start} to {end} "
+            f"of triangle {seam.triangle}, {_why(seam.along, seam.against)}"
+        )
+    raise MeshError(
+        where,
+        f"is not watertight: {fault}",
+        "mend the mesh, or ask about surfaces, without solid",
+    )
+
+
+def _why(along: int, against: int) -> str:
+    if along + against == 1:
+        return "which has no other triangle"
+    if along + against == 2:
+        return "whose other triangle is turned over"
+    return f"which has {along + against} triangles"

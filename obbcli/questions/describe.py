@@ -1,0 +1,141 @@
+"""What is to be said of a contact that the kernels found: where, with which features, how sure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli import kernels, primitives
+from obbcli.accuracy import Accuracy
+from obbcli.answers.contact import Collision, Contact, FirstContact, Status
+from obbcli.questions.border import POPS_A_SLICE, limits_of, refused, trees_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from obbcli.answers.contact import Vector
+    from obbcli.motion.body import Body
+    from obbcli.questions.border import Trees
+
+_EVIDENCE = {
+    kernels.Evidence.INTERSECTING: "intersecting",
+    kernels.Evidence.WITHIN_TOLERANCE: "within_tolerance",
+    kernels.Evidence.BOXES: "boxes",
+}
+_EXACT_LIMITS = limits_of(Accuracy())
+_SEPARATED = Contact(status=Status.SEPARATED)
+_FEATURES = ("vertex", "edge", "face")
+
+
+def contact_of(query: kernels.ContactQuery, found: kernels.Contact, clearance: float) -> Contact:
+    """Return what a moving question found; not for triangles that meet at t = 0."""
+    place = query.place(found)
+    point_a, point_b, normal, normal_a, normal_b = map(_vector, place[:5])
+    by_boxes = found.evidence is kernels.Evidence.BOXES
+    # Whether surfaces themselves touch at t = 0 was decided exactly before.
+    is_at_start = found.high == 0 and (by_boxes or clearance > 0)
+    return Contact(
+        status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
+        time=found.low,
+        time_bounds=(found.low, None if by_boxes else found.high),
+        evidence=_EVIDENCE[found.evidence],
+        point=_vector([0.5 * p + 0.5 * q for p, q in zip(*place[:2], strict=True)]),
+        point_a=point_a,
+        point_b=point_b,
+        normal=normal,
+        normal_a=normal_a,
+        normal_b=normal_b,
+        triangle_a=None if by_boxes else found.triangle_a,
+        triangle_b=None if by_boxes else found.triangle_b,
+        feature="box" if by_boxes else f"{_FEATURES[place[5]]}-{_FEATURES[place[6]]}",
+        distance=None if by_boxes else found.distance,
+        approximate=by_boxes,
+        error_bound=found.error_bound,
+    )
+
+
+def contact_at_start(
+    bodies: tuple[Body, Body], trees: Trees, triangle_a: int, triangle_b: int
+) -> Contact:
+    """Return the contact of two triangles that meet at t = 0."""
+    (a, b), (tree_a, tree_b) = bodies, trees
+    # The exact question about the two triangles knows where they meet, and which features.
+    touch = primitives.first_contact(
+        primitives.Triangle(a.pose.apply(tree_a.triangle(triangle_a))),
+        primitives.Triangle(b.pose.apply(tree_b.triangle(triangle_b))),
+    )
+    assert isinstance(touch, primitives.PrimitiveContact)
+    point = _vector(touch.point)
+    return Contact(
+        status=Status.OVERLAP_AT_START,
+        time=0.0,
+        time_bounds=(0.0, 0.0),
+        evidence="intersecting",
+        point=point,
+        point_a=point,
+        point_b=point,
+        normal=None if touch.normal is None else _vector(touch.normal),
+        normal_a=None if touch.normal_a is None else _vector(touch.normal_a),
+        normal_b=None if touch.normal_b is None else _vector(touch.normal_b),
+        triangle_a=triangle_a,
+        triangle_b=triangle_b,
+        feature=touch.feature,
+        distance=0.0,
+    )
+
+
+def boxes_at_start(query: kernels.ContactQuery, error_bound: float, clearance: float) -> Contact:
+    """Return the contact of boxes that stand for triangles and meet at t = 0.
+
+    Args:
+        query: a moving question of the same boxes, not asked yet: it may tell where some meet.
+        error_bound: how far apart the surfaces can be, mesh units.
+        clearance: of the question, mesh units.
+    """
+    # As far always, or what is told would depend on how fast the machine is.
+    while (left := POPS_A_SLICE - query.counts()[3]) > 0 and not query.advance(left):
+        pass
+    found = query.contact()
+    if found is not None and found.evidence is kernels.Evidence.BOXES and found.low == 0:
+        return contact_of(query, found, clearance)
+    return Contact(
+        status=Status.OVERLAP_AT_START,
+        time=0.0,
+        time_bounds=(0.0, None),
+        evidence="boxes",
+        feature="box",
+        approximate=True,
+        error_bound=error_bound,
+    )
+
+
+def unresolved(low: float) -> Contact:
+    """Return that nothing is known beyond a proven time, s."""
+    return Contact(status=Status.UNRESOLVED, time=low, time_bounds=(low, None))
+
+
+def _vector(values: Iterable[float]) -> Vector:
+    """Return three floats, without negative zeros."""
+    x, y, z = (float(value) + 0.0 for value in values)
+    return x, y, z
+
+
+def answer_at_rest(
+    bodies: tuple[Body, Body], here: kernels.Placed, there: kernels.Placed
+) -> FirstContact:
+    """Return what `Query` says of bodies at rest, in a fraction of the calls.
+
+    Raises:
+        MotionError: posed coordinates leave the range of double.
+        TreeFileError: a tree file is damaged.
+    """
+    trees = trees_of(bodies)
+    try:
+        found = Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
+    except (ValueError, kernels.TreeError) as fault:
+        raise refused(trees, fault) from fault
+    contact = _SEPARATED
+    if found.witness is not None:
+        contact = contact_at_start(bodies, trees, *found.witness)
+    elif found.status is Status.UNRESOLVED:
+        contact = unresolved(0.0)
+    return FirstContact.of(contact, found.stats)

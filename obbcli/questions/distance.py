@@ -1,0 +1,118 @@
+"""How far apart, and where: `distance`. Best-first on the trees, every bound proven."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from obbcli import kernels
+from obbcli.accuracy import Accuracy
+from obbcli.answers.contact import Distance
+from obbcli.motion.body import as_body
+from obbcli.questions.border import (
+    POPS_A_SLICE,
+    box_limits,
+    damaged,
+    out_of_range,
+    stats_of,
+    trees_of,
+)
+
+if TYPE_CHECKING:
+    from obbcli.motion.body import Body, Shape
+    from obbcli.questions.border import Trees
+
+_EXACT = Accuracy()
+
+
+def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None) -> Distance:
+    """Return how far apart two bodies are at t = 0, and where they are nearest.
+
+    `bounds` are a proof for the posed vertices rounded to double (see `Pose`), with every rounding
+    counted: no two points of the surfaces are nearer than `bounds[0]`, and two of them are no
+    further apart than `bounds[1]`. By default they are as close as doubles allow, a few units in
+    the last place of the distance, or 2^-49 of the largest coordinate where nothing but rounding
+    tells hundreds of nearest pairs apart. Surfaces that touch or cross have the distance 0 exactly,
+    and no others do; to be inside is not to touch. Swapping the bodies swaps the points.
+
+    Every limit of `accuracy` keeps the bounds proven and lets them part: `distance_tolerance` stops
+    where they are this close, `max_depth_a`, `max_depth_b` and `leaves` bound what is in a box by
+    the box, and `max_iterations` and `timeout` stop wherever the search is. Its other fields say
+    nothing about bodies at rest and are not used; motions play no part.
+
+    Args:
+        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        b: likewise.
+        accuracy: limits and coarseness; None: as close as doubles allow.
+
+    Raises:
+        MotionError: posed coordinates or the distance leave the range of double.
+        MeshError: a mesh cannot be read or is refused.
+        TreeFileError: a tree file is damaged.
+        OSError: a file cannot be read.
+
+    Example:
+        >>> distance("sample_meshes/housing.stl", "sample_meshes/board.vtk").bounds
+        (0.049999999999971644, 0.049999999999999996)
+    """
+    return measure(a, b, accuracy)[0]
+
+
+def measure(
+    a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None
+) -> tuple[Distance, bool]:
+    """Return what `distance` does, and whether it ended before `max_iterations` and `timeout`.
+
+    Raises:
+        ObbError: as `distance`.
+        OSError: a file cannot be read.
+    """
+    accuracy = _EXACT if accuracy is None else accuracy
+    bodies = as_body(a), as_body(b)
+    start = time.perf_counter()
+    trees = trees_of(bodies)
+    loaded = time.perf_counter()
+    try:
+        query = _query(trees, bodies, accuracy)
+        is_complete = _run(query, accuracy)
+        low, high, point_a, point_b, triangle_a, triangle_b, counts = query.answer()
+    except ValueError as fault:
+        raise out_of_range(trees, "pose", fault) from fault
+    except kernels.TreeError as fault:
+        raise damaged(trees, fault) from fault
+    answer = Distance(
+        distance=high,
+        bounds=(low, high),
+        point_a=point_a,
+        point_b=point_b,
+        triangle_a=triangle_a,
+        triangle_b=triangle_b,
+        stats=stats_of(
+            trees, counts, {"load": loaded - start, "query": time.perf_counter() - loaded}
+        ),
+    )
+    return answer, is_complete
+
+
+def _query(trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy) -> kernels.DistanceQuery:
+    """Return the kernels' query, not yet advanced."""
+    (tree_a, tree_b), (a, b) = trees, bodies
+    return kernels.DistanceQuery(
+        tree_a.kernel,
+        a.pose.kernel,
+        tree_b.kernel,
+        b.pose.kernel,
+        *box_limits(accuracy),
+        accuracy.distance_tolerance or 0.0,
+    )
+
+
+def _run(query: kernels.DistanceQuery, accuracy: Accuracy) -> bool:
+    """Advance a query to its end or to a limit of `accuracy`; return whether it ended."""
+    left = accuracy.max_iterations
+    stop = None if accuracy.timeout is None else time.perf_counter() + accuracy.timeout
+    while not query.advance(min(POPS_A_SLICE, left)):
+        left = accuracy.max_iterations - query.pops
+        if left <= 0 or (stop is not None and time.perf_counter() >= stop):
+            return False
+    return True

@@ -1,0 +1,130 @@
+"""`Asked`: the bodies of a question about a scene, loaded, and the pairs of them that may meet."""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from obbcli.scene.candidates import Ignored, asked_pairs, find_candidates
+from obbcli.scene.results import SceneContact, SceneStats
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from obbcli.motion.body import Body
+    from obbcli.questions.legs.relay import Counts
+    from obbcli.scene.candidates import Candidates
+    from obbcli.scene.scene import Scene
+    from obbcli.scene.shapes import Shapes
+
+
+class Asked:
+    """A question about a scene, up to where pairs are looked at.
+
+    Args:
+        scene: the scene.
+        shapes: its meshes and trees.
+        pairs: the bodies asked about, by name; None: all pairs.
+
+    Attributes:
+        bodies: those that pairs are of, in the order of the scene.
+        shapes: theirs, loaded.
+        duration: s.
+        accuracy: of each answer.
+        candidates: the pairs that may meet.
+
+    Raises:
+        SceneError: a pair is none, or names what is not there.
+        MeshError: a mesh cannot be read or is refused.
+        TreeFileError: a tree file is damaged.
+        OSError: a file cannot be read.
+    """
+
+    def __init__(
+        self, scene: Scene, shapes: Shapes, pairs: Iterable[tuple[str, str]] | None
+    ) -> None:
+        self.duration = scene.duration
+        self.accuracy = scene.accuracy
+        self._all = scene.bodies
+        self._places_by_name = {body.name: place for place, body in enumerate(scene.bodies)}
+        self._shapes = shapes
+        self._placed: dict[int, Body] = {}
+        self._seconds = {"load": 0.0, "bounds": 0.0, "query": 0.0}
+        ignored = Ignored(scene.bodies, scene.ignore)
+        wanted = None if pairs is None else asked_pairs(pairs, scene.bodies, ignored)
+        places = list(range(len(scene.bodies)))
+        if wanted is not None:
+            places = sorted({place for pair in wanted for place in pair})
+        self._places = places
+        self.bodies = bodies = [scene.bodies[place] for place in places]
+        with self.timed("load"):
+            self.shapes = loaded = [shapes.load(body.body.shape) for body in bodies]
+        with self.timed("bounds"):
+            found = find_candidates(bodies, loaded, places, ignored, scene.duration, scene.accuracy)
+        self.candidates = found if wanted is None else _only(found, wanted)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Count the time that the body takes."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self._seconds[stage] += time.perf_counter() - start
+
+    def bodies_of(self, a: int, b: int) -> tuple[Body, Body]:
+        """Return two bodies, given by their places in the scene, on their trees."""
+        return self._body(a), self._body(b)
+
+    def _body(self, place: int) -> Body:
+        placed = self._placed.get(place)
+        if placed is None:
+            placed = self._placed[place] = self._shapes.body(self._all[place].body)
+        return placed
+
+    def names(self, a: int, b: int) -> tuple[str, str]:
+        """Return the names of two bodies."""
+        return self._all[a].name, self._all[b].name
+
+    def pair_of(self, contact: SceneContact) -> tuple[int, int]:
+        """Return the places of two bodies that touch."""
+        return self._places_by_name[contact.body_a], self._places_by_name[contact.body_b]
+
+    def stats(self, counts: Counts, *, apart: int, in_contact: int, open_: int) -> SceneStats:
+        """Return what became of the pairs.
+
+        Args:
+            counts: box tests, triangle tests, exact ones and pops.
+            apart: pairs that were proven apart, of the candidates.
+            in_contact: pairs of which a contact is known.
+            open_: pairs that a limit left open.
+        """
+        total, static, ignored = self.candidates[2:]
+        near = len(self.candidates.times)
+        return SceneStats(
+            total,
+            static,
+            ignored,
+            total - static - ignored - near,
+            apart,
+            in_contact,
+            open_,
+            near - apart - in_contact - open_,
+            *counts,
+            tuple(self._shapes.stats(self._all[place]) for place in self._places),
+            dict(self._seconds),
+        )
+
+
+def _only(candidates: Candidates, wanted: list[tuple[int, int]]) -> Candidates:
+    """Return the candidates among pairs that were asked for, of which none is ignored."""
+    known = set(wanted)
+    kept = [row for row, (a, b) in enumerate(candidates.pairs.tolist()) if (a, b) in known]
+    return candidates._replace(
+        pairs=candidates.pairs[kept],
+        times=candidates.times[kept],
+        total=len(wanted),
+        static=0,
+        ignored=0,
+    )

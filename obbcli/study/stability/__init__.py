@@ -1,0 +1,1 @@
+"""Stability: the same question at the extremes, and which relations its answers keep."""

@@ -1,0 +1,282 @@
+"""The same question at the extremes, and which answers hold: `stability`.
+
+An answer is two proofs: no contact before the bracket, contact at its end. Two questions of which
+one's points are within e of the other's contradict each other where contact in the one, at a time
+that the other proves free of contact even with clearance e, is proven as well. Nothing else does:
+what is compared is what was promised.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from obbcli.accuracy import Accuracy
+from obbcli.answers.contact import Status
+from obbcli.errors import ObbError
+from obbcli.questions.first_contact import first_contact
+from obbcli.study.stability import extremes, surfaces, units
+from obbcli.study.stability.proofs import Proofs, on_clock
+from obbcli.study.stability.rows import Row, Stability
+from obbcli.study.stability.samples import fault_of_samples
+from obbcli.study.stability.world import SLACK, Trees, pair_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from obbcli.answers.contact import FirstContact
+    from obbcli.motion.body import Body, Shape
+    from obbcli.study.stability.extremes import Changed, Extreme
+    from obbcli.study.stability.rows import Outcome
+    from obbcli.study.stability.world import Pair
+
+# An extreme may take this many times what the question itself took, and at least so many pops.
+PATIENCE = 200
+LEAST_POPS = 50_000
+# Beyond this a refusal is right: posed coordinates may reach about 1e307.
+_LARGEST = 1e306
+
+
+class Battery:
+    """All extremes of a question, tried one by one.
+
+    Args:
+        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        b: likewise.
+        duration: s; None: 1 where a body moves, else 0.
+        accuracy: what is asked of every answer. None: the defaults.
+
+    Raises:
+        MotionError: the method is sampled, or a body moves through poses.
+        ObbError: as `first_contact` says.
+    """
+
+    def __init__(
+        self,
+        a: Body | Shape,
+        b: Body | Shape,
+        duration: float | None = None,
+        accuracy: Accuracy | None = None,
+    ) -> None:
+        self._pair = pair_of(a, b, duration, Accuracy() if accuracy is None else accuracy)
+        self._trees = Trees()
+        asked = self._pair
+        whole = first_contact(*self._trees.bodies(asked), asked.duration, asked.accuracy)
+        self.answer = whole
+        most = min(asked.accuracy.max_iterations, max(PATIENCE * whole.stats.pops, LEAST_POPS))
+        self._pair = asked._replace(accuracy=replace(asked.accuracy, max_iterations=most))
+        self._told = Proofs.of(self.answer, self._pair, Fraction(1))
+        told = self._told
+        low = None if told.is_free else float(told.free)
+        high = None if told.met is None else float(told.met)
+        self._left = deque(plan(self._pair, low, high))
+        self.count = len(self._left)
+        self.rows: list[Row] = []
+
+    @property
+    def next_extreme(self) -> str:
+        """What `advance` tries next; empty where nothing is left."""
+        return f"{self._left[0].family}, {self._left[0].name}" if self._left else ""
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether all extremes were tried."""
+        return not self._left
+
+    def advance(self) -> Row:
+        """Try the next extreme; an interrupt leaves it to be tried."""
+        row = self._try(self._left[0])
+        self._left.popleft()
+        self.rows.append(row)
+        return row
+
+    def result(self) -> Stability:
+        """Return what is known so far."""
+        return Stability(self.answer, tuple(self.rows))
+
+    def _try(self, extreme: Extreme) -> Row:
+        changed = extreme.change()
+        row = Row(
+            family=extreme.family,
+            extreme=extreme.name,
+            magnitude=extreme.magnitude,
+            expected=_expected(changed),
+            bound=changed.bound,
+            why=changed.why,
+            status=None,
+            time_bounds=None,
+            difference=None,
+            outcome="broken",
+            held=False,
+            reason="",
+        )
+        if not _is_in_range(changed.pair):
+            return replace(
+                row, outcome="refused", held=True, reason="numbers beyond the range of doubles"
+            )
+        try:
+            answer = self._ask(changed.pair)
+            return self._judged(row, changed, answer)
+        except ObbError as fault:
+            is_right = changed.pair.largest > _LARGEST
+            outcome: Outcome = "refused" if is_right else "broken"
+            return replace(row, outcome=outcome, held=is_right, reason=str(fault))
+
+    def _ask(self, pair: Pair) -> FirstContact:
+        return first_contact(*self._trees.bodies(pair), pair.duration, pair.accuracy)
+
+    def _judged(self, row: Row, changed: Changed, answer: FirstContact) -> Row:
+        """Return the row of an answer."""
+        told = Proofs.of(answer, changed.pair, changed.clock)
+        row = replace(
+            row,
+            status=answer.status,
+            time_bounds=on_clock(answer, changed.clock),
+            difference=self._told.difference(told) if changed.is_related else None,
+        )
+        outcome, reason = self._outcome(changed, answer, told)
+        held = outcome != "broken"
+        if changed.is_same and outcome not in ("same", "unresolved"):
+            held, reason = False, reason or "other bits, although nothing is rounded"
+            outcome = "broken"
+        return replace(row, outcome=outcome, held=held, reason=reason)
+
+    def _outcome(self, changed: Changed, answer: FirstContact, told: Proofs) -> tuple[Outcome, str]:
+        if not changed.is_related:
+            fault = fault_of_samples(changed.pair, self._trees, answer)
+            if fault:
+                return "broken", fault
+            if answer.status is Status.UNRESOLVED:
+                return "unresolved", _limit(changed)
+            return "agrees", ""
+        if self._told.denies(told) or told.denies(self._told):
+            if self._is_contradiction(changed, told):
+                return "broken", f"{answer.status} contradicts {self.answer.status}"
+            return "within bound", _why_other_bits(changed, is_cut=False)
+        if answer.status is Status.UNRESOLVED:
+            return "unresolved", _limit(changed)
+        if answer.status is self.answer.status and self._told.is_same_as(told):
+            return "same", ""
+        is_cut = changed.pair.duration != self._pair.duration and changed.clock == 1
+        return "agrees", _why_other_bits(changed, is_cut=is_cut)
+
+    def _is_contradiction(self, changed: Changed, told: Proofs) -> bool:
+        """Return whether two answers still contradict each other with the bound as clearance."""
+        if changed.bound == 0 and told.gap == 0 and self._told.gap == 0:
+            return True
+        if self._told.denies(told):
+            gap = told.gap / changed.length
+            wider = Proofs.of(
+                self._ask(_cleared(self._pair, changed.bound + gap)), self._pair, Fraction(1)
+            )
+            if wider.denies(told):
+                return True
+        if told.denies(self._told):
+            room = (changed.bound + self._told.gap) * changed.length
+            asked = _cleared(changed.pair, room)
+            return Proofs.of(self._ask(asked), asked, changed.clock).denies(self._told)
+        return False
+
+
+def stability(
+    a: Body | Shape,
+    b: Body | Shape,
+    duration: float | None = None,
+    accuracy: Accuracy | None = None,
+    *,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> Stability:
+    """Ask the same first-contact question at its extremes, and say which answers hold.
+
+    The world is scaled, shifted, turned and hurried, bodies are swapped, triangles are reordered,
+    split, repeated and reversed, time is scaled and cut, bodies are spun and tilted, and digits are
+    taken away. What may change is bounded by what that did to the input.
+
+    Args:
+        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        b: likewise.
+        duration: s; None: 1 where a body moves, else 0.
+        accuracy: what is asked of every answer; an extreme may take 200 times the queue pops of the
+            question itself, and at least 50,000, as far as `max_iterations` allows. None: the
+            defaults.
+        progress: called before each extreme with how many are done, of how many, and which is next.
+
+    Raises:
+        MotionError: the method is sampled, or a body moves through poses.
+        ObbError: as `first_contact` says.
+
+    Example:
+        >>> from obbcli import Body, Mesh, Motion
+        >>> floor = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> roof = Mesh([[0, 0, 1], [1, 0, 1], [0, 1, 1]], [[0, 1, 2]])
+        >>> stability(floor, Body(roof, motion=Motion([0, 0, -2]))).broken
+        ()
+    """
+    battery = Battery(a, b, duration, accuracy)
+    while not battery.is_finished:
+        if progress is not None:
+            progress(len(battery.rows), battery.count, battery.next_extreme)
+        battery.advance()
+    return battery.result()
+
+
+def plan(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]:
+    """Yield all extremes of a question, family by family.
+
+    Args:
+        pair: the question.
+        low: s; no contact before it. None: none at all.
+        high: s; contact then. None: none is proven.
+    """
+    yield from units.scaled(pair)
+    yield from extremes.shifted(pair)
+    yield from extremes.hurried(pair)
+    yield from extremes.turned(pair)
+    yield from surfaces.swapped(pair)
+    yield from surfaces.permuted(pair)
+    yield from surfaces.split(pair)
+    yield from surfaces.repeated(pair)
+    yield from surfaces.reversed_windings(pair)
+    yield from units.timed(pair)
+    yield from surfaces.cut(pair, low, high)
+    yield from surfaces.spun(pair)
+    yield from surfaces.tilted(pair)
+    yield from surfaces.coarsened(pair)
+
+
+def _expected(changed: Changed) -> str:
+    if not changed.is_related:
+        return "proven"
+    return "same bits" if changed.is_same else "within bound"
+
+
+def _is_in_range(pair: Pair) -> bool:
+    """Return whether all numbers of a question are finite."""
+    numbers = [pair.duration]
+    for side in pair.sides:
+        for rows in (side.vertices, side.velocity, side.spin, side.pivot):
+            numbers += [float(np.abs(rows).max())]
+    return all(math.isfinite(number) for number in numbers)
+
+
+def _cleared(pair: Pair, room: float) -> Pair:
+    """Return a pair with so much more clearance, rounded up."""
+    asked = pair.accuracy
+    room = max((asked.clearance + room) * SLACK, 5e-324)
+    return pair._replace(accuracy=replace(asked, clearance=room))
+
+
+def _limit(changed: Changed) -> str:
+    most = changed.pair.accuracy.max_iterations
+    return f"no answer within {most:,} steps, or within the digits of doubles"
+
+
+def _why_other_bits(changed: Changed, *, is_cut: bool) -> str:
+    if changed.bound == 0:
+        return "" if is_cut else "the same surfaces in other boxes: other brackets, and both hold"
+    return f"{changed.why}: points are off by up to {changed.bound:.2g}"

@@ -1,0 +1,1 @@
+"""Tradeoff: speed against accuracy, measured, every claim held against a proof."""

@@ -1,0 +1,144 @@
+"""Answers of a sweep: as kernels leave them, as a caller's array, and as a document has them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from obbcli.answers.contact import Status
+
+if TYPE_CHECKING:
+    from obbcli.answers.contact import Contact, FirstContact
+
+    Answers = np.ndarray[tuple[int], np.dtype[np.void]]
+
+_VECTORS = ("point", "point_a", "point_b", "normal", "normal_a", "normal_b")
+_COUNTS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
+
+RAW = np.dtype(
+    [
+        ("time_lo", "f8"),
+        ("time_hi", "f8"),
+        *((name, "f8", 3) for name in _VECTORS),
+        ("distance", "f8"),
+        ("error_bound", "f8"),
+        ("triangle_a", "i8"),
+        ("triangle_b", "i8"),
+        *((name, "u8") for name in _COUNTS),
+        ("status", "u1"),
+        ("evidence", "u1"),
+        ("feature", "u1"),
+        ("approximate", "u1"),
+        ("padding", "V4"),
+    ]
+)
+"""`SweepAnswer` of the kernels: NaN and -1 for what does not apply, codes for words."""
+
+# By their codes there. After them come rows that are refused, and those of which it is left to
+# Python to say where triangles meet.
+STATUSES = (Status.SEPARATED, Status.CONTACT, Status.OVERLAP_AT_START, Status.UNRESOLVED)
+REFUSED, TRIANGLES_AT_START = 4, 5
+_EVIDENCES = ("", "intersecting", "within_tolerance", "boxes", "sampled")
+_DIMENSIONS = ("vertex", "edge", "face")
+_FEATURES = ("", *(f"{a}-{b}" for a in _DIMENSIONS for b in _DIMENSIONS), "box")
+
+ROW = np.dtype(
+    [
+        ("status", "U16"),
+        ("time", "f8"),
+        ("time_lo", "f8"),
+        ("time_hi", "f8"),
+        ("evidence", "U16"),
+        *((name, "f8", 3) for name in _VECTORS),
+        ("triangle_a", "i8"),
+        ("triangle_b", "i8"),
+        ("feature", "U13"),
+        ("distance", "f8"),
+        ("error_bound", "f8"),
+        ("approximate", "?"),
+        *((name, "u8") for name in _COUNTS),
+    ]
+)
+"""A row of what `sweep` returns."""
+
+# Copied as they are.
+_SHARED = ("time_lo", "time_hi", *_VECTORS, "triangle_a", "triangle_b", "distance", "error_bound")
+
+
+def as_rows(raw: Answers) -> Answers:
+    """Return the answers as `sweep` gives them: words spelled out."""
+    rows = np.empty(len(raw), ROW)
+    for name in (*_SHARED, *_COUNTS):
+        rows[name] = raw[name]
+    rows["time"] = raw["time_lo"]
+    rows["approximate"] = raw["approximate"] != 0
+    rows["status"] = np.array([status.value for status in STATUSES])[raw["status"]]
+    rows["evidence"] = np.array(_EVIDENCES)[raw["evidence"]]
+    rows["feature"] = np.array(_FEATURES)[raw["feature"]]
+    return rows
+
+
+def write_contact(raw: Any, contact: Contact) -> None:
+    """Write a contact over a row of `RAW`, all but its counters."""
+    low, high = contact.time_bounds or (None, None)
+    raw["time_lo"] = math.nan if low is None else low
+    raw["time_hi"] = math.nan if high is None else high
+    for name in (*_VECTORS, "distance"):
+        value = getattr(contact, name)
+        raw[name] = math.nan if value is None else value
+    for name in ("triangle_a", "triangle_b"):
+        value = getattr(contact, name)
+        raw[name] = -1 if value is None else value
+    raw["error_bound"] = contact.error_bound
+    raw["approximate"] = contact.approximate
+    raw["status"] = STATUSES.index(contact.status)
+    raw["evidence"] = _EVIDENCES.index(contact.evidence or "")
+    raw["feature"] = _FEATURES.index(contact.feature or "")
+
+
+def write_answer(raw: Any, answer: FirstContact) -> None:
+    """Write an answer with what it cost over a row of `RAW`."""
+    write_contact(raw, answer)
+    for name in _COUNTS:
+        raw[name] = getattr(answer.stats, name)
+
+
+def as_results(raw: Answers) -> list[dict[str, Any]]:
+    """Return each answer as the documents of `first-contact` have it, and its counters as stats.
+
+    Of a refused row there is nothing to say: {}.
+    """
+    names = [name for name in RAW.names or () if name != "padding"]
+    columns = [raw[name].tolist() for name in names]
+    return [_result(dict(zip(names, values, strict=True))) for values in zip(*columns, strict=True)]
+
+
+def _result(values: dict[str, Any]) -> dict[str, Any]:
+    if values["status"] == REFUSED:
+        return {}
+    status = STATUSES[values["status"]]
+    low, high = _or_none(values["time_lo"]), _or_none(values["time_hi"])
+    result: dict[str, Any] = {
+        "status": status.value,
+        "time": low,
+        "time_bounds": None if low is None else [low, high],
+        "evidence": _EVIDENCES[values["evidence"]] or None,
+    }
+    for name in _VECTORS:
+        vector = values[name]
+        result[name] = None if math.isnan(vector[0]) else vector
+    for name in ("triangle_a", "triangle_b"):
+        result[name] = None if values[name] < 0 else values[name]
+    result["feature"] = _FEATURES[values["feature"]] or None
+    result["distance"] = _or_none(values["distance"])
+    result["contained"] = None
+    result["approximate"] = bool(values["approximate"])
+    result["error_bound"] = values["error_bound"]
+    result["stats"] = {name: values[name] for name in _COUNTS}
+    return result
+
+
+def _or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value

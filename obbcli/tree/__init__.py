@@ -1,0 +1,1 @@
+"""Trees of oriented boxes: built whole or on demand, saved, opened, checked."""
