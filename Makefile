@@ -10,7 +10,7 @@ PIP := $(BIN)/python -m pip -qq --disable-pip-version-check
 # pip builds in this environment, with these tools, so that an unchanged kernel is not compiled again.
 INSTALL := $(PIP) install --no-build-isolation --check-build-dependencies
 BUILD_TOOLS := scikit-build-core nanobind cmake ninja
-SOURCES := $(wildcard $(addprefix $(KERNELS)/,*.cpp *.hpp CMakeLists.txt))
+SOURCES := $(wildcard $(addprefix $(KERNELS)/,*/*.cpp */*.hpp CMakeLists.txt))
 CPP := $(filter-out %.txt,$(SOURCES))
 
 # Those that reach the kernels; the other half checks oracles and scenes.
@@ -183,7 +183,7 @@ fuzz: .build/fuzz/deep
 	@rm -rf $@; mv $@.new $@
 
 THREAD_TEST := tests/threads/growing_trees.cpp
-THREAD_KERNELS := $(filter-out $(KERNELS)/bindings%,$(filter %.cpp,$(SOURCES)))
+THREAD_KERNELS := $(filter-out $(KERNELS)/bindings/%,$(filter %.cpp,$(SOURCES)))
 
 sanitize-threads: .build/growing_trees
 	.build/growing_trees

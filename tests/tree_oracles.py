@@ -1,7 +1,7 @@
 """An independent reading of tree files: the documented bytes, and containment in exact integers.
 
 Shares no code with the package: `struct` and NumPy read the format, the axes follow from the
-float32 quaternion in doubles as `kernels/node.hpp` defines them, and from there nothing rounds.
+float32 quaternion in doubles as `kernels/tree/node.hpp` defines them; from there nothing rounds.
 """
 
 from __future__ import annotations

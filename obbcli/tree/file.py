@@ -36,7 +36,7 @@ class TreeArrays:
     """A tree as plain arrays, all read-only.
 
     Attributes:
-        nodes: uint8 (N, 64), the boxes in depth-first order (`kernels/node.hpp`), aligned to 64.
+        nodes: uint8 (N, 64), boxes in depth-first order (`kernels/tree/node.hpp`), aligned to 64.
         corners: uint32 (F, 3), vertices of the triangles in tree order.
         triangle_ids: uint32 (F,), their rows in the mesh file.
         vertices: float64 (V, 3), mesh units.

@@ -1,9 +1,9 @@
 // What a fuzzer's bytes say, read from the front; whatever is missing is zero.
 #pragma once
 
-#include "pose.hpp"
-#include "screw.hpp"
-#include "tree.hpp"
+#include "shapes/pose.hpp"
+#include "shapes/screw.hpp"
+#include "tree/tree.hpp"
 
 #include <algorithm>
 #include <cmath>

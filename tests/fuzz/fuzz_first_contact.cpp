@@ -1,9 +1,9 @@
 // Two small bodies in any motion: the search ends at its limit, and nothing that it proves apart
 // crosses at a time in between.
 #include "bytes.hpp"
-#include "contact_sweep.hpp"
-#include "predicates.hpp"
-#include "tree_build.hpp"
+#include "in_motion/contact_sweep.hpp"
+#include "primitives/predicates.hpp"
+#include "build/tree_build.hpp"
 
 #include <array>
 #include <memory>

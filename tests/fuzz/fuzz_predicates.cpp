@@ -1,9 +1,9 @@
 // Two shapes at rest and in motion: verdicts keep the laws that exact ones keep, and the two ways
 // to them, by planes and edges and by separating axes, agree.
 #include "bytes.hpp"
-#include "orientation.hpp"
-#include "pair_query.hpp"
-#include "predicates.hpp"
+#include "exact/orientation.hpp"
+#include "primitives/pair_query.hpp"
+#include "primitives/predicates.hpp"
 
 #include <optional>
 

@@ -1,12 +1,12 @@
 // The data of a tree file as an attacker may give them: with checksums that fit, and damaged under
 // checksums of the undamaged. Bytes: see `take_file`; `seeds.py` writes them from real files.
 #include "bytes.hpp"
-#include "contact_sweep.hpp"
-#include "crc32.hpp"
-#include "distance_query.hpp"
-#include "file_tree.hpp"
-#include "static_query.hpp"
-#include "tree_check.hpp"
+#include "in_motion/contact_sweep.hpp"
+#include "tree/crc32.hpp"
+#include "distance/distance_query.hpp"
+#include "tree/file_tree.hpp"
+#include "at_rest/static_query.hpp"
+#include "tree/tree_check.hpp"
 
 #include <algorithm>
 #include <optional>

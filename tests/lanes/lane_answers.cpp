@@ -1,12 +1,12 @@
 // Prints all bits of answers and counts, to be compared between kernels compiled for registers of
 // one width and of another.
-#include "contact_query.hpp"
-#include "crc32.hpp"
-#include "distance_query.hpp"
-#include "lanes.hpp"
-#include "registers.hpp"
-#include "static_query.hpp"
-#include "tree_build.hpp"
+#include "in_motion/contact_query.hpp"
+#include "tree/crc32.hpp"
+#include "distance/distance_query.hpp"
+#include "shapes/lanes.hpp"
+#include "numbers/registers.hpp"
+#include "at_rest/static_query.hpp"
+#include "build/tree_build.hpp"
 
 #include <cmath>
 #include <cstdint>

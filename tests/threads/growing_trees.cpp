@@ -1,14 +1,14 @@
 // Questions from several threads to trees that grow, or are read, as they are asked, for the thread
 // sanitizer: every answer must be that of one thread and whole trees.
-#include "contact_query.hpp"
-#include "contact_sweep.hpp"
-#include "containment_query.hpp"
-#include "crc32.hpp"
-#include "distance_query.hpp"
-#include "file_tree.hpp"
-#include "parallel.hpp"
-#include "static_query.hpp"
-#include "tree_build.hpp"
+#include "in_motion/contact_query.hpp"
+#include "in_motion/contact_sweep.hpp"
+#include "at_rest/containment_query.hpp"
+#include "tree/crc32.hpp"
+#include "distance/distance_query.hpp"
+#include "tree/file_tree.hpp"
+#include "work/parallel.hpp"
+#include "at_rest/static_query.hpp"
+#include "build/tree_build.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,114 @@
+// Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
+#pragma once
+
+#include "descent/placed_boxes.hpp"
+#include "descent/posed_tree.hpp"
+#include "primitives/predicates.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace obb {
+
+struct StaticQueryOptions {
+    // Find every intersecting pair of triangles instead of stopping at the first contact.
+    bool all_pairs = false;
+    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
+    bool boxes_for_leaves = false;
+    // Nodes this deep stand for what they hold; the root's depth is 0.
+    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    // Stop after so many pairs.
+    std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
+};
+
+struct TrianglePair {
+    std::int64_t a, b;
+    friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+struct StaticQueryCounts {
+    std::uint64_t box_tests = 0;
+    std::uint64_t triangle_tests = 0;
+    std::uint64_t exact_triangle_tests = 0;
+    std::uint64_t pops = 0;
+};
+
+// The query as an object: advanced by so many pops at a time, so that callers can look at the clock
+// or at a Ctrl-C in between.
+class StaticQuery {
+  public:
+    // The trees must outlive the query. Throws std::domain_error where posed coordinates would
+    // leave the range of double.
+    StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
+                const StaticQueryOptions& options);
+
+    // Takes at most so many pairs off the stack, fewer where they take long (see SliceClock); true
+    // when the answer is complete.
+    bool advance(std::uint64_t max_pops);
+
+    // Of a query for all pairs without a limit: goes on breadth first until there are so many pairs
+    // of nodes to look into, or none, and hands each over to a query of its own. These can be
+    // advanced at the same time; join() takes over what they found. The pairs and counts are those
+    // of the undivided query.
+    [[nodiscard]] std::vector<StaticQuery> divide(std::size_t count);
+    void join(std::span<StaticQuery> parts);
+
+    // Pairs of rows of the mesh files, sorted; the first contact found unless all were asked for.
+    [[nodiscard]] std::span<const TrianglePair> pairs() const { return pairs_; }
+    [[nodiscard]] std::vector<TrianglePair> take_pairs() { return std::move(pairs_); }
+    // Contact between boxes that stand for what they hold.
+    [[nodiscard]] bool is_by_boxes() const { return is_by_boxes_; }
+    [[nodiscard]] bool is_contact() const { return is_by_boxes_ || !pairs_.empty(); }
+    // Bounds how far apart the surfaces can be where boxes met, mesh units; 0 elsewhere.
+    [[nodiscard]] double error_bound() const { return error_bound_; }
+    [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
+
+  private:
+    struct Pair {
+        NodeRef a, b;
+        std::uint32_t next = 0; // of a leaf that is opened, the first triangle not yet pushed
+    };
+    // Up to two parts of a node: its children, or the node itself.
+    struct Parts {
+        std::array<NodeRef, 2> refs;
+        std::size_t count;
+    };
+
+    [[nodiscard]] bool is_open(const PosedTree& body, const NodeRef& ref,
+                               std::uint32_t max_depth) const;
+    [[nodiscard]] static double size_of(const PosedTree& body, const NodeRef& ref);
+    [[nodiscard]] static Parts parts_of(const PosedTree& body, const NodeRef& ref, bool is_opened);
+    void visit();
+    void open(const Pair& pair, bool opens_a, bool opens_b);
+    void open_leaf(bool opens_a);
+    [[nodiscard]] bool may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
+                                const Triangle& b);
+    bool keep_if_intersecting(const NodeRef& ref_a, const NodeRef& ref_b,
+                              const TriangleVerdict& verdict);
+    void meet(const Pair& pair);
+    [[nodiscard]] static bool tests_crowds(const StaticQueryOptions& options);
+    [[nodiscard]] bool is_crowd(const Pair& pair) const;
+    void meet_all(const Pair& pair);
+    [[nodiscard]] double distance_bound(const Pair& pair) const;
+    void finish();
+
+    PosedTree a_, b_;
+    StaticQueryOptions options_;
+    bool tests_crowds_;
+    RoundingBound bound_{};
+    int exponent_ = 0;
+    LaneFrame frame_{};
+    std::vector<Pair> stack_;
+    std::vector<TrianglePair> pairs_;
+    bool is_by_boxes_ = false;
+    bool is_finished_ = false;
+    double error_bound_ = 0;
+    StaticQueryCounts counts_;
+};
+
+} // namespace obb

@@ -1,0 +1,175 @@
+// How far apart are two posed trees? Best-first on proven lower bounds: the pair of nodes that may
+// be nearest is opened first, so that the smallest key that waits bounds the distance from below.
+#pragma once
+
+#include "at_rest/static_query.hpp"
+#include "descent/bound_queue.hpp"
+#include "descent/placed_boxes.hpp"
+#include "distance/distance_lanes.hpp"
+#include "nearest/closest_points.hpp"
+#include "shapes/pose.hpp"
+#include "tree/tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace obb {
+
+struct DistanceQueryOptions {
+    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
+    bool boxes_for_leaves = false;
+    // Nodes this deep stand for what they hold; the root's depth is 0.
+    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    // The search may stop when its bounds are this close, in mesh units.
+    double tolerance = 0;
+};
+
+struct DistanceQueryCounts {
+    std::uint64_t box_tests = 0;
+    std::uint64_t triangle_tests = 0;
+    std::uint64_t exact_triangle_tests = 0; // those that took more digits than double has
+    std::uint64_t pops = 0;
+};
+
+// What is proven at any time: the surfaces, with their vertices posed and rounded to double, are at
+// least `low` and at most `high` apart, in mesh units. Both are 0 if and only if two triangles have
+// been proven to intersect. `point_a` and `point_b` are where `high` was measured.
+struct DistanceBounds {
+    double low;
+    double high;
+    Vec3 point_a, point_b;
+    std::int64_t triangle_a, triangle_b;
+};
+
+class DistanceQuery {
+  public:
+    // The trees must outlive the query. Throws std::domain_error where posed coordinates would
+    // leave the range of double.
+    DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
+                  const DistanceQueryOptions& options);
+
+    // Takes at most so many pairs off the queue, fewer where they take long (see SliceClock); true
+    // when the bounds are as close as asked, or as rounding, boxes for triangles and the depth
+    // limits allow.
+    bool advance(std::uint64_t max_pops);
+
+    // Throws std::domain_error where the distance exceeds the largest double.
+    [[nodiscard]] DistanceBounds bounds() const;
+    [[nodiscard]] const DistanceQueryCounts& counts() const { return counts_; }
+
+  private:
+    // Of nodes with at most so many triangles all pairs are looked at, rather than smaller boxes.
+    static constexpr std::uint32_t kFew = 3;
+    // Lengths within the query are in its unit: mesh units times 2^-exponent_.
+    struct Pair {
+        double key; // proven: nothing in `a` is nearer to anything in `b`
+        NodeRef a, b;
+        NearFeatures features;  // where two triangles were measured: only more digits tell more
+        std::uint32_t next = 0; // of a leaf that is opened, the first triangle not yet added
+    };
+    // Where the least distance was found.
+    struct Incumbent {
+        NodeRef a, b;
+        NearFeatures features;
+        bool is_fine;               // whether the direction is known
+        Vector3<Twofold> direction; // from A to B
+    };
+    static constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
+    // A node as the tests see it: its box, or the triangle that needs none.
+    struct Side {
+        NodeRef ref;
+        Obb box;
+        Triangle triangle; // in the frame of the boxes
+    };
+
+    // Some of what is under a node: its children, or itself where it stays.
+    struct Part {
+        std::array<NodeRef, 2> refs;
+        std::uint32_t count;
+    };
+    struct Candidate {
+        double low;
+        std::uint32_t a, b; // positions in their batches
+    };
+
+    [[nodiscard]] bool is_diving() const { return high_ > std::numeric_limits<double>::max(); }
+    [[nodiscard]] Pair pop();
+    void visit(const Pair& pair);
+    void part(const Pair& pair);
+    void open(const Pair& pair, bool opens_a, bool opens_b);
+    void open_leaf(const Pair& pair, bool opens_a);
+    [[nodiscard]] Part part_of(const PosedTree& body, const NodeRef& ref, bool opens) const;
+    void add_by_lanes(const Pair& pair, const Part& a, const Part& b);
+    void add_one_by_one(const Pair& pair, const Part& a, const Part& b);
+    void measure_all(const Pair& pair);
+    void measure_one(const Pair& pair, const Triangle& a, const Triangle& b);
+    void refine(const Pair& pair);
+    void close(const Pair& pair);
+
+    // How a pair goes on: with the children of one or both, with their triangles, or not at all.
+    enum class Next : std::uint8_t { kOpenA, kOpenB, kOpenBoth, kMeasure, kClose };
+    [[nodiscard]] Next next(const Pair& pair) const;
+    [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
+    [[nodiscard]] Side reach(const PosedTree& body, const NodeRef& ref) const;
+    [[nodiscard]] double bound(const Side& a, const Side& b);
+    [[nodiscard]] double high_in_unit(double length, int exponent) const;
+    [[nodiscard]] double low_in_unit(double length, int exponent) const;
+
+    // Whether a lower bound is as good as the least distance found.
+    [[nodiscard]] bool is_settled(double key) const;
+    [[nodiscard]] double slack() const; // of the least distance
+    [[nodiscard]] bool has_many_ties() const;
+
+    // Faces along each other, of which boxes cannot tell whether any two are nearer than the rest:
+    // all vertices of both nodes are looked at, along the direction that the least distance has.
+    [[nodiscard]] bool may_tie(const Pair& pair) const;
+    [[nodiscard]] bool may_all_tie();
+    [[nodiscard]] bool are_sides_apart(const Pair& pair);
+    void look_for_tie(const Pair& pair);
+    void wait_for(const Pair& candidate, const Pair& pair);
+    void end_wait();
+    void refine_incumbent();
+    [[nodiscard]] bool are_boxes_apart(const Pair& pair) const;
+    [[nodiscard]] double all_apart(const Pair& pair) const;
+    void settle(double key) { low_ = std::min(low_, key); }
+    void add(const Pair& pair);
+    [[nodiscard]] Triangle in_unit(const Triangle& t) const;
+    void take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
+    void touch(const NodeRef& a, const NodeRef& b);
+
+    PosedTree a_, b_;
+    DistanceQueryOptions options_;
+    RoundingBound bound_{};
+    double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
+    int exponent_ = 0;
+    double unit_ = 0; // 2^-exponent_; 0 where products with it may underflow
+    std::array<double, 2> unit_factors_{1, 1}; // of which the product is 2^-exponent_
+    // On the heap: vectors this wide want more alignment than those who hold queries give.
+    std::unique_ptr<LaneFrame> lanes_ = std::make_unique<LaneFrame>();
+    double tolerance_ = 0;
+    std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
+    TimeQueue<Pair> queue_;                 // by their keys
+    std::vector<Pair> stack_;               // small pairs, done before the queue goes on
+    double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
+    double high_ = std::numeric_limits<double>::infinity(); // between explicit points
+    DistanceBounds best_{};
+    Incumbent incumbent_{};
+    // How many triangles may be looked at for a tie; before there are many, and from then on.
+    std::array<std::uint32_t, 2> tie_limits_{kAnyNumber, kAnyNumber};
+    // Nodes that may tie as a whole, all of whose triangles are being made ready; and the pair that
+    // was popped, which they are or hold.
+    struct Wait {
+        Pair candidate, pair;
+        std::array<Preparation, 2> preparations;
+    };
+    std::optional<Wait> wait_;
+    DistanceQueryCounts counts_;
+};
+
+} // namespace obb

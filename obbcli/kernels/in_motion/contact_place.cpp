@@ -1,0 +1,137 @@
+// Where a contact is: points, normals and the features that meet.
+#include "in_motion/contact_query.hpp"
+#include "primitives/contact_normals.hpp"
+
+#include "nearest/closest_points.hpp"
+#include "numbers/scale.hpp"
+#include "primitives/pair_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obb {
+
+namespace {
+
+// Vertices this close to the farthest along the normal belong to the feature, relative to the
+// triangle's size: what lies flat at the contact is tilted by so little at the time before it.
+constexpr double kFlat = 0x1p-26;
+
+// Dimension of the face of a triangle that is farthest along n: repeated corners count once.
+int dimension_along(const Triangle& t, Vec3 n, double size) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vec3& p : t) {
+        farthest = std::max(farthest, dot(n, p));
+    }
+    int corners = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const bool is_new = k == 0 || (t[k] != t[0] && (k == 1 || t[k] != t[1]));
+        corners += is_new && dot(n, t[k]) >= farthest - kFlat * size ? 1 : 0;
+    }
+    return corners - 1;
+}
+
+Vec3 unit_or(Vec3 v, Vec3 fallback) {
+    const double scale = norm_inf(v);
+    if (!(scale > 0)) {
+        return fallback;
+    }
+    const Vec3 w = (1.0 / scale) * v;
+    return (1.0 / norm(w)) * w;
+}
+
+// The point of a box that is nearest to p.
+Vec3 nearest_in(const Obb& box, Vec3 p) {
+    Vec3 result = box.center;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double y = dot(box.axes[k], p - box.center);
+        result = result + std::clamp(y, -box.half_extents[k], box.half_extents[k]) * box.axes[k];
+    }
+    return result;
+}
+
+} // namespace
+
+// From the query's frame, whose origin is A's pivot, in mesh units.
+Vec3 ContactQuery::in_world(Vec3 point, double low) const {
+    const Vec3 pivot = a_.screw().pivot + low * a_.screw().linear_velocity;
+    return pivot + scaled(point, length_exponent_);
+}
+
+ContactPlace ContactQuery::place(const Contact& contact) {
+    if (contact.evidence == Evidence::kBoxes) {
+        return place_of_boxes(contact);
+    }
+    return is_translation_ && clearance_ == 0 ? place_in_translation(contact)
+                                              : place_of_triangles(contact);
+}
+
+// The exact question about the pair knows its features as well.
+ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
+    const std::optional<PairContact> found =
+        first_contact(a_.posed_triangle(contact.a), b_.posed_triangle(contact.b),
+                      {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration});
+    const auto dimension = [](const Feature& f) { return std::min<int>(f.dimension, 2); };
+    return {found->point,
+            found->point,
+            found->touch.normal,
+            found->normal_a,
+            found->normal_b,
+            dimension(found->touch.feature_a),
+            dimension(found->touch.feature_b)};
+}
+
+ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
+    const double time = std::ldexp(contact.low, -time_exponent_);
+    set_time(time);
+    const SpinningTriangle a(a_.triangle(contact.a), a_.spin());
+    const SpinningTriangle b(b_.triangle(contact.b), b_.spin());
+    const MovingFrame now = frame(0, time);
+    Triangle moved = b.points;
+    for (Vec3& p : moved) {
+        p = p + now.between;
+    }
+    const TriangleDistance closest = measure(a.points, moved);
+    const bool is_apart = closest.low > 0;
+    Vec3 point_a = closest.point_a, point_b = closest.point_b;
+    const std::optional<PairContact> meeting =
+        is_apart ? std::nullopt : first_contact(a.points, moved, LinearMotion{});
+    if (!is_apart) {
+        point_a = meeting ? meeting->point : point_a;
+        point_b = meeting ? meeting->point : point_b;
+    }
+    const TriangleStep step = time_apart(a, b, now, is_apart ? point_b - point_a : Vec3{0, 0, 0});
+    const Vec3 towards_b = -1.0 * now.closing_velocity;
+    const Vec3 last_resort = meeting && meeting->touch.axis.kind != AxisKind::kNone
+                                 ? meeting->touch.normal
+                                 : unit_or(point_b - point_a, unit_or(towards_b, Vec3{1, 0, 0}));
+    const Vec3 normal = step.time > 0 ? step.normal : last_resort;
+    const double size = a.size + b.size;
+    return {in_world(point_a, contact.low),
+            in_world(point_b, contact.low),
+            normal,
+            face_normal(a.points, Feature{}, normal),
+            face_normal(moved, Feature{}, -normal),
+            dimension_along(a.points, normal, size),
+            dimension_along(moved, -normal, size)};
+}
+
+ContactPlace ContactQuery::place_of_boxes(const Contact& contact) {
+    const double time = std::ldexp(contact.low, -time_exponent_);
+    set_time(time);
+    const Obb a = a_.box(contact.a);
+    Obb b = b_.box(contact.b);
+    b.center = b.center + frame(0, time).between;
+    const Vec3 point_a = nearest_in(a, b.center);
+    const Vec3 point_b = nearest_in(b, point_a);
+    const Vec3 normal = unit_or(b.center - a.center, Vec3{1, 0, 0});
+    return {in_world(point_a, contact.low),
+            in_world(point_b, contact.low),
+            normal,
+            smooth_normal(a, point_a, normal),
+            smooth_normal(b, point_b, -normal),
+            2,
+            2};
+}
+
+} // namespace obb

@@ -1,0 +1,196 @@
+// Translations after which thousands of pairs touch at the same time: faces that land on each
+// other, triangles that are there many times. Boxes, which are rounded, cannot tell that none of
+// them is earlier than the one that is known, and to ask every pair would take the product of their
+// numbers. The plane of that contact can tell it of all vertices under two nodes, one by one.
+#include "in_motion/contact_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace obb {
+
+namespace {
+
+// Pops after which a contact is looked for ahead of its time, and since the earliest one so far:
+// few questions get that far.
+constexpr std::uint64_t kProbePatience = 1024;
+constexpr std::uint64_t kTiePatience = 64;
+// Fewer triangles are opened as fast.
+constexpr std::uint32_t kCrowd = 16;
+// By how much boxes are larger than what they hold, of their size.
+constexpr double kBoxRounding = 0x1p-18;
+// After nodes that the plane cuts only those of so many times fewer triangles are looked at.
+constexpr std::uint32_t kFewer = 4;
+
+} // namespace
+
+// What stands for triangles may meet earlier than they.
+bool ContactQuery::has_limits() const {
+    constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
+    return options_.boxes_for_leaves || options_.max_depth_a < kNoLimit ||
+           options_.max_depth_b < kNoLimit;
+}
+
+// Asks two triangles under a pair before all that may be earlier is opened: of pairs that touch at
+// one time the boxes are all earlier than the first triangles.
+void ContactQuery::probe(const Entry& entry) {
+    if (!is_translation_ || clearance_ > 0 || options_.each_pair || has_limits() ||
+        counts_.pops < std::max(next_probe_, kProbePatience)) {
+        return;
+    }
+    next_probe_ = 2 * counts_.pops;
+    Entry at = entry;
+    while (!at.a.is_triangle() || !at.b.is_triangle()) {
+        at = nearer_half(at, at.b.is_triangle() ||
+                                 (!at.a.is_triangle() && size_of(a_, at.a) >= size_of(b_, at.b)));
+    }
+    meet_in_translation(at);
+}
+
+// Of a leaf, its first triangle.
+ContactQuery::Entry ContactQuery::nearer_half(const Entry& entry, bool opens_a) {
+    const NodeRef &ref = opens_a ? entry.a : entry.b, other = opens_a ? entry.b : entry.a;
+    const TreeView& tree = (opens_a ? a_ : b_).tree();
+    const Node& node = tree.node(ref);
+    tree.prepare(ref);
+    const bool is_leaf = TreeView::is_leaf(node);
+    const NodeRef first = TreeView::triangle_ref(ref, ref.begin);
+    const std::array<NodeRef, 2> parts =
+        is_leaf ? std::array{first, first} : tree.children(ref, node);
+    const std::array<NodeRef, 2> others{other, other};
+    set_time(entry.time);
+    place(opens_a ? parts : others, opens_a ? others : parts);
+    const std::array<double, 2> steps = times_apart(
+        *motion_, *boxes_, frame(a_.box_error() + b_.box_error(), entry.time), duration_);
+    counts_.box_tests += 2;
+    Entry half = entry;
+    (opens_a ? half.a : half.b) = parts[steps[1] < steps[0] ? 1 : 0];
+    return half;
+}
+
+void ContactQuery::set_planes(const Entry& entry, const LinearMotion& motion, const Touch& touch) {
+    planes_.clear();
+    if (has_limits()) {
+        return;
+    }
+    const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
+    for (const auto& plane : {ContactPlane::of_axis(a, b, motion, touch),
+                              ContactPlane::of_motion(a, b, motion, touch)}) {
+        if (plane) {
+            const Vec3 n = plane->normal();
+            planes_.push_back(
+                {*plane, n, top_of(a_.triangle(entry.a), n), -top_of(b_.triangle(entry.b), -n)});
+        }
+    }
+    may_all_tie_ = true;
+    tie_limit_ = std::numeric_limits<std::uint32_t>::max();
+    tie_pops_ = counts_.pops + kTiePatience;
+}
+
+double ContactQuery::top_of(const Triangle& t, Vec3 direction) {
+    return std::max({dot(t[0], direction), dot(t[1], direction), dot(t[2], direction)});
+}
+
+bool ContactQuery::may_tie(const Entry& entry) const {
+    if (planes_.empty() || counts_.pops < tie_pops_) {
+        return false;
+    }
+    const std::uint32_t count = entry.a.triangle_count() + entry.b.triangle_count();
+    return count >= kCrowd && count <= tie_limit_;
+}
+
+// Whether boxes are on their own sides, but for what they are larger than what they hold.
+bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
+    const auto reaches = [](const MovingTree& body, const NodeRef& ref, Vec3 n, double top) {
+        const Obb box = body.box(ref);
+        double height = dot(box.center, n);
+        for (std::size_t k = 0; k < 3; ++k) {
+            height += box.half_extents[k] * std::fabs(dot(box.axes[k], n));
+        }
+        return height <= top + kBoxRounding * (norm_1(box.half_extents) + norm_1(box.center));
+    };
+    return reaches(a_, entry.a, tie.normal, tie.top_of_a) &&
+           reaches(b_, entry.b, -tie.normal, -tie.bottom_of_b);
+}
+
+// Looks for a plane that may prove that nothing of a pair touches before the earliest contact
+// known; else the pair is opened. The bodies as a whole come first: of those there is nothing left
+// to do.
+void ContactQuery::look_for_tie(const Entry& entry) {
+    if (may_all_tie_) {
+        may_all_tie_ = false;
+        Entry all = entry;
+        all.a = a_.tree().root();
+        all.b = b_.tree().root();
+        if (waits_for(all, entry, 0)) {
+            return;
+        }
+    }
+    if (!waits_for(entry, entry, 0)) {
+        part(entry);
+    }
+}
+
+bool ContactQuery::waits_for(const Entry& candidate, const Entry& entry, std::size_t plane) {
+    for (; plane < planes_.size(); ++plane) {
+        if (are_sides(candidate, planes_[plane])) {
+            wait_ = Wait{candidate, entry, plane, {}, candidate.a.begin, candidate.b.begin, {}};
+            wait_->preparations[0].begin(a_.tree(), candidate.a);
+            wait_->preparations[1].begin(b_.tree(), candidate.b);
+            return true;
+        }
+    }
+    return false;
+}
+
+// Goes on with vertices one by one, in slices: both nodes may hold whole meshes.
+bool ContactQuery::end_wait(SliceClock& clock) {
+    Wait& wait = *wait_;
+    if (!wait.preparations[0].advance(clock) || !wait.preparations[1].advance(clock)) {
+        return false;
+    }
+    const ContactPlane& plane = planes_[wait.plane].plane;
+    const auto all_hold = [&](const MovingTree& body, std::uint32_t position, SeenLately& seen,
+                              const auto& holds) {
+        const Triangle t = body.posed_triangle({position, position + 1, 0, 0});
+        const Corners& corners = body.tree().corners[position];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!seen.add(corners[k]) && !holds(t[k])) {
+                return false;
+            }
+        }
+        return true;
+    };
+    bool holds = true;
+    for (; holds && wait.next_a < wait.candidate.a.end; ++wait.next_a) {
+        if (clock.is_over()) {
+            return false;
+        }
+        holds = all_hold(a_, wait.next_a, wait.seen[0],
+                         [&](const Vec3& p) { return plane.holds_a(p); });
+    }
+    for (; holds && wait.next_b < wait.candidate.b.end; ++wait.next_b) {
+        if (clock.is_over()) {
+            return false;
+        }
+        holds = all_hold(b_, wait.next_b, wait.seen[1],
+                         [&](const Vec3& p) { return plane.holds_b(p); });
+    }
+    const Entry candidate = wait.candidate, entry = wait.entry;
+    const std::size_t next = wait.plane + 1;
+    wait_.reset();
+    const bool is_pair = key_of(candidate.a, candidate.b) == key_of(entry.a, entry.b) &&
+                         candidate.a.end == entry.a.end && candidate.b.end == entry.b.end;
+    if (holds && !is_pair) {
+        queue_.clear();
+    } else if (!holds) {
+        tie_limit_ = (candidate.a.triangle_count() + candidate.b.triangle_count()) / kFewer;
+        if (!waits_for(candidate, entry, next) && (is_pair || !waits_for(entry, entry, 0))) {
+            part(entry);
+        }
+    }
+    return true;
+}
+
+} // namespace obb
