@@ -42,7 +42,7 @@ def obj(corners: Sequence[Sequence[float]]) -> str:
 def as_input(path: Path) -> dict[str, object]:
     """Return what documents say of a cube's file that was named from its folder."""
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    return {"path": path.name, "sha256": digest, "triangle_count": 12}
+    return {"path": path.name, "sha256": digest, "triangle_count": 12, "notes": []}
 
 
 def stl(corners: Sequence[Sequence[float]]) -> bytes:

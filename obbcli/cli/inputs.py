@@ -50,7 +50,7 @@ class Input(NamedTuple):
         digest = self.sha256
         if with_sha256 and digest is None:
             digest = file_sha256(self.name, self.stamp)
-        return Source(self.name, digest, self.tree.triangle_count)
+        return Source(self.name, digest, self.tree.triangle_count, self.tree.notes)
 
 
 def keep_inputs(output: Path | None, names: Iterable[str]) -> None:

@@ -102,7 +102,7 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     if path.suffix.lower() == ".stl" and not hashed and path.is_file():
         arrays = _read_binary_stl(path)
         if arrays is not None:
-            return _mesh(arrays, path.name, str(path), None)
+            return _mesh(arrays, Source(str(path), path.name, b"", path), None)
     return _load(read_source(path), path.suffix, read, hashed=hashed)
 
 
@@ -156,19 +156,19 @@ def _load(
         raise source.error("does not fit into memory") from fault
     finally:
         sha256 = None if digest is None else digest()
-    return _mesh((vertices, triangles), source.name, source.place, sha256)
+    return _mesh((vertices, triangles), source, sha256)
 
 
-def _mesh(arrays: MeshArrays, name: str, place: str, sha256: str | None) -> Mesh:
+def _mesh(arrays: MeshArrays, source: Source, sha256: str | None) -> Mesh:
     """Return the mesh of a file, which errors call by its place."""
     vertices, triangles = arrays
     # Read-only arrays are adopted, not copied.
     vertices.setflags(write=False)
     triangles.setflags(write=False)
     try:
-        return Mesh(vertices, triangles, source=name, sha256=sha256)
+        return Mesh(vertices, triangles, source.name, sha256, source.notes)
     except MeshError as fault:
-        where = fault.where.replace(name, place, 1)
+        where = fault.where.replace(source.name, source.place, 1)
         raise MeshError(where, fault.fault, fault.remedy) from fault
 
 

@@ -13,6 +13,8 @@ from obbcli.errors import MeshError
 from obbcli.mesh import measure, topology
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike, NDArray
 
 #: Triangle ids and vertex indices are stored as int32.
@@ -31,6 +33,7 @@ class Mesh:
         triangles: int32 (F, 3), rows of `vertices`; any whole numbers are taken.
         source: the file's name, or None for a mesh made in code; named in errors.
         sha256: SHA-256 of the file's bytes in hexadecimal, or None.
+        notes: what of the file was taken with a change, a sentence each.
 
     Raises:
         MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
@@ -45,6 +48,7 @@ class Mesh:
     triangles: NDArray[np.int32]
     source: str | None
     sha256: str | None
+    notes: tuple[str, ...]
 
     def __init__(
         self,
@@ -52,6 +56,7 @@ class Mesh:
         triangles: ArrayLike,
         source: str | None = None,
         sha256: str | None = None,
+        notes: Iterable[str] = (),
     ) -> None:
         prefix = f"{source}: " if source else ""
         checked = _checked_vertices(vertices, prefix)
@@ -61,6 +66,7 @@ class Mesh:
         put(self, "triangles", _checked_triangles(triangles, len(checked), prefix))
         put(self, "source", source)
         put(self, "sha256", sha256)
+        put(self, "notes", tuple(map(_printable, notes)))
 
     def __repr__(self) -> str:
         source = f", source={self.source!r}" if self.source else ""
@@ -117,6 +123,11 @@ class Mesh:
     def corner_ids(self) -> NDArray[np.int64]:
         """Return the corners as numbers of distinct positions, (F, 3)."""
         return topology.position_ids(self.vertices)[self.triangles]
+
+
+def _printable(note: str) -> str:
+    """Return a sentence as terminals and tree files can hold it: names in it come from files."""
+    return "".join(letter if letter.isprintable() else "?" for letter in note)
 
 
 def _checked_vertices(value: ArrayLike, prefix: str) -> NDArray[np.float64]:

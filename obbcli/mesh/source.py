@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import stat
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, BinaryIO
 
 from obbcli.errors import MeshError
 
@@ -26,7 +27,8 @@ _CHUNK = 1 << 20
 _SHARE = 4
 
 
-class Source(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Source:
     """Holds what was read, once: readers parse these bytes and the digest is of these bytes.
 
     Args:
@@ -34,12 +36,24 @@ class Source(NamedTuple):
         name: the file's name.
         data: the whole file.
         path: where it lies, or None where the bytes came from a stream.
+        notes: what readers said of it so far; they become `Mesh.notes`.
     """
 
     place: str
     name: str
     data: bytes
     path: Path | None = None
+    notes: list[str] = field(default_factory=list)
+
+    def note(self, text: str) -> None:
+        """Tell what is taken with a change, such as "12 quads cut into 24 triangles".
+
+        Args:
+            text: one sentence, without a full stop and without the file's name; said twice it is
+                kept once.
+        """
+        if text not in self.notes:
+            self.notes.append(text)
 
     def error(self, fault: str, remedy: str = "", *, at: str = "") -> MeshError:
         """Return an error at this file; `at` is a line number, or words such as `byte 84`."""

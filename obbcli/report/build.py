@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import ObbError
-from obbcli.report.record import Source, document
+from obbcli.report.record import Source, document, note_rows
 from obbcli.report.table import Table, count, seconds, size
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def build_record(
         files: what became of each.
         options: what shaped the trees.
     """
-    inputs = [_source(name, file)._asdict() for name, file in zip(names, files, strict=True)]
+    inputs = [_source(name, file).part() for name, file in zip(names, files, strict=True)]
     errors = [_error(name, file) for name, file in zip(names, files, strict=True)]
     return document(
         "build",
@@ -58,7 +58,7 @@ def build_record(
 def _source(name: str, file: Built | ObbError) -> Source:
     if isinstance(file, ObbError):
         return Source(name, None, None)
-    return Source(name, file.tree.source_sha256, file.tree.triangle_count)
+    return Source(name, file.tree.source_sha256, file.tree.triangle_count, file.tree.notes)
 
 
 def _error(name: str, file: Built | ObbError) -> Record | None:
@@ -86,7 +86,7 @@ def _file_part(file: Built | ObbError) -> Record:
 
 
 def build_tables(record: Record) -> list[Table]:
-    """Return the table of a record: one row a tree that was built."""
+    """Return the table of a record: one row a tree that was built, then what was changed."""
     rows = [
         (
             source["path"],
@@ -104,4 +104,5 @@ def build_tables(record: Record) -> list[Table]:
         if file["error"] is None
     ]
     headings = ("mesh", "tree", "triangles", "boxes", "levels", "file", "B/triangle", "time")
-    return [Table(rows, headings, name_count=2)]
+    notes = note_rows((source["path"], source) for source in record["inputs"])
+    return [Table(rows, headings, name_count=2), *([Table(notes)] if notes else [])]

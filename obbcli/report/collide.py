@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.answers.collision import Status
-from obbcli.report.record import answer_document
+from obbcli.report.record import answer_document, note_rows
 from obbcli.report.table import Table, count, length, seconds
 
 if TYPE_CHECKING:
@@ -79,12 +79,13 @@ def collide_bare(record: Record) -> str:
 
 
 def source_rows(record: Record) -> list[tuple[str, str]]:
-    """Return the rows that name A and B."""
-    inputs = record["inputs"].items()
-    return [
-        (name.upper(), f"{source['path']} ({count(source['triangle_count'])} triangles)")
-        for name, source in inputs
+    """Return the rows that name A and B, and those that say what of them was changed."""
+    sources = [(name.upper(), source) for name, source in record["inputs"].items()]
+    rows = [
+        (name, f"{source['path']} ({count(source['triangle_count'])} triangles)")
+        for name, source in sources
     ]
+    return [*rows, *note_rows(sources)]
 
 
 def why_open(record: Record) -> str:

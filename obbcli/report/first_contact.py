@@ -43,7 +43,7 @@ def first_contact_tables(record: Record) -> list[Table]:
     """Return the tables of a record: the answer, and the list where it was asked for."""
     result = record["result"]
     rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
-    rows += contained_rows(result)
+    rows += [*_bracket(result), *contained_rows(result)]
     if result["point"] is not None:
         rows.append(("point", point(result["point"])))
     if result["normal"] is not None:
@@ -53,7 +53,7 @@ def first_contact_tables(record: Record) -> list[Table]:
         # Triangles that overlap from the start need not meet in any one way.
         way = f" ({result['feature']})" if result["feature"] else ""
         rows.append(("triangles", f"{a} of A and {b} of B{way}"))
-    rows = [*rows[:4], *_bracket(result), *rows[4:], *cost_rows(record["stats"])]
+    rows += cost_rows(record["stats"])
     return [Table(rows), *([contacts_table(result)] if "contacts" in result else [])]
 
 

@@ -36,11 +36,11 @@ def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bo
     """
     is_mesh = isinstance(shape, Mesh)
     mesh = shape if isinstance(shape, Mesh) else shape.mesh
-    source = Source(path, sha256, len(mesh.triangles))
+    source = Source(path, sha256, len(mesh.triangles), mesh.notes)
     result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
     result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
     result["check"] = "passed" if is_checked else None
-    return document("info", {"file": source._asdict()}, result=result)
+    return document("info", {"file": source.part()}, result=result)
 
 
 def _mesh_part(mesh: Mesh) -> Record:
@@ -99,7 +99,7 @@ def _source_state(path: str, tree: ObbTree) -> str | None:
 def info_tables(record: Record) -> list[Table]:
     """Return the tables of a record: the mesh, and the tree and its levels where there is one."""
     result = record["result"]
-    tables = [Table(_mesh_rows(record["inputs"]["file"]["path"], result))]
+    tables = [Table(_mesh_rows(record["inputs"]["file"], result))]
     if result["tree"] is not None:
         tables.append(Table(_tree_rows(result["tree"]), title="tree"))
         tables.append(_levels_table(result["tree"]["levels"]))
@@ -108,11 +108,11 @@ def info_tables(record: Record) -> list[Table]:
     return tables
 
 
-def _mesh_rows(path: str, result: Record) -> list[tuple[str, str]]:
+def _mesh_rows(file: Record, result: Record) -> list[tuple[str, str]]:
     low, high = result["bounds"]
     warnings = [("warning", text) for text in result["accuracy"]["warnings"]]
     return [
-        ("file", f"{path} ({result['kind']})"),
+        ("file", f"{file['path']} ({result['kind']})"),
         ("triangles", count(result["triangle_count"])),
         ("vertices", count(result["vertex_count"])),
         ("bounds", f"{point(low)}  to  {point(high)}"),
@@ -121,6 +121,7 @@ def _mesh_rows(path: str, result: Record) -> list[tuple[str, str]]:
         ("watertight", "yes" if result["is_watertight"] else "no"),
         ("degenerate", f"{count(result['degenerate_count'])} triangles"),
         ("duplicate", f"{count(result['duplicate_count'])} triangles"),
+        *[("note", text) for text in file["notes"]],
         *warnings,
     ]
 

@@ -15,7 +15,7 @@ from obbcli.files import stamp_of
 from obbcli.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import QueryStats
@@ -35,11 +35,17 @@ class Source(NamedTuple):
         path: as the user wrote it; `-` for standard input.
         sha256: of the file's bytes, in hexadecimal; None where it was not asked for.
         triangle_count: how many triangles it holds; None where it could not be read.
+        notes: what of it was taken with a change, a sentence each.
     """
 
     path: str
     sha256: str | None
     triangle_count: int | None
+    notes: tuple[str, ...] = ()
+
+    def part(self) -> Record:
+        """Return what a record says of it."""
+        return self._asdict() | {"notes": list(self.notes)}
 
 
 class Setting(NamedTuple):
@@ -73,7 +79,7 @@ def answer_document(command: str, setting: Setting, result: Record, stats: Query
     a, b = setting.sources
     return document(
         command,
-        {"a": a._asdict(), "b": b._asdict()},
+        {"a": a.part(), "b": b.part()},
         motion=setting.motion,
         accuracy=setting.accuracy.as_dict(),
         **({} if setting.solid is None else {"solid": setting.solid}),
@@ -129,6 +135,15 @@ def stats_part(stats: QueryStats) -> Record:
 def seconds_part(seconds: Mapping[str, float]) -> dict[str, float]:
     """Return wall times by stage, in s."""
     return {stage: float(value) for stage, value in seconds.items()}
+
+
+def note_rows(sources: Iterable[tuple[str, Record]]) -> list[tuple[str, str]]:
+    """Return the rows of a table that say what of its inputs was taken with a change.
+
+    Args:
+        sources: what the table calls each input, and what the record says of it.
+    """
+    return [("note", f"{name}: {text}") for name, source in sources for text in source["notes"]]
 
 
 def error_document(error: ObbError, code: int, trace: str | None = None) -> Record:

@@ -9,7 +9,7 @@ from obbcli.answers.contact import Status
 from obbcli.motion.body import Body
 from obbcli.report.collide import triangle_tests
 from obbcli.report.contacts import contact_part
-from obbcli.report.record import Source, body_part, document, seconds_part
+from obbcli.report.record import Source, body_part, document, note_rows, seconds_part
 from obbcli.report.table import Table, count, point, seconds
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def scene_record(
     stats["bodies"] = [body._asdict() for body in answer.stats.bodies]
     return document(
         "scene",
-        {"scene": source._asdict(), "meshes": [mesh._asdict() for mesh in meshes]},
+        {"scene": source.part(), "meshes": [mesh.part() for mesh in meshes]},
         duration=asked.duration,
         bodies=_bodies_part(asked, places, with_motion=with_motion),
         ignore=[dict(entry) for entry in ignore],
@@ -134,6 +134,7 @@ def scene_tables(record: Record) -> list[Table]:
     rows = [
         ("scene", scene["path"]),
         ("bodies", bodies),
+        *note_rows((mesh["path"], mesh) for mesh in meshes),
         ("pairs", f"{count(stats['pairs'])}: " + ", ".join(fates) if fates else "none"),
         ("answer", _sentence(record)),
         ("box tests", count(stats["box_tests"])),

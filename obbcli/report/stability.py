@@ -53,7 +53,7 @@ def stability_record(setting: Setting, studied: Studied) -> Record:
     }
     return document(
         "stability",
-        {"a": a._asdict(), "b": b._asdict()},
+        {"a": a.part(), "b": b.part()},
         motion=setting.motion,
         accuracy=setting.accuracy.as_dict(),
         result=result,

@@ -46,7 +46,7 @@ def header_record(
         options: defaults of what rows leave out.
         accuracy: as used.
     """
-    a, b = (source._asdict() for source in sources)
+    a, b = (source.part() for source in sources)
     inputs = {"a": a, "b": b, "queries": dict(queries)}
     return document("sweep", inputs, options=options, accuracy=accuracy)
 

@@ -100,7 +100,7 @@ def tradeoff_record(
     a, b = setting.sources
     return document(
         "tradeoff",
-        {"a": a._asdict(), "b": b._asdict()},
+        {"a": a.part(), "b": b.part()},
         motion=setting.motion,
         accuracy=setting.accuracy.as_dict(),
         result=result,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.report.collide import source_rows
 from obbcli.report.first_contact import first_contact_bare, first_contact_tables
 from obbcli.report.record import answer_document, document, seconds_part
 from obbcli.report.table import Table, count, seconds
@@ -75,7 +76,7 @@ def boxes_record(
         "nodes": boxes.nodes.tolist(),
     }
     stats = {"seconds": seconds_part(times)}
-    return document("view", {"a": source._asdict()}, result={"drawn": drawn}, stats=stats)
+    return document("view", {"a": source.part()}, result={"drawn": drawn}, stats=stats)
 
 
 def contact_record(
@@ -115,12 +116,11 @@ def view_tables(record: Record) -> list[Table]:
     if drawn["what"] == "contact":
         answer = first_contact_tables(record)
         return [*answer, Table([*_contact_rows(drawn), _file_row(drawn)])]
-    source = record["inputs"]["a"]
     where = f"under node {drawn['node']}" if drawn["level"] is None else "of the tree"
     per_depth = ", ".join(f"{count(d['box_count'])} at {d['depth']}" for d in drawn["depths"])
     times = ", ".join(f"{k} {seconds(v)}" for k, v in record["stats"]["seconds"].items())
     rows = [
-        ("A", f"{source['path']} ({count(source['triangle_count'])} triangles)"),
+        *source_rows(record),
         ("boxes", f"{count(drawn['box_count'])} {where}"),
         ("levels", per_depth),
         _file_row(drawn),

@@ -39,9 +39,9 @@ _DECISIVE = {
 
 
 def with_digest(header: dict[str, Any]) -> dict[str, Any]:
-    """Return a header with the digest of all in it that decides answers: not of files' names."""
+    """Return a header with the digest of all in it that decides answers: no names, no notes."""
     inputs = {
-        name: {key: value for key, value in source.items() if key != "path"}
+        name: {key: value for key, value in source.items() if key not in ("path", "notes")}
         for name, source in header["inputs"].items()
     }
     text = json.dumps(header | {"inputs": inputs}, sort_keys=True, allow_nan=False)

@@ -124,7 +124,7 @@ class TreeFacts:
         triangles = np.empty((self.triangle_count, 3), np.int32)
         triangles[ids] = arrays.corners.view(np.int32)
         try:
-            return Mesh(self.vertices, triangles, source=self.source, sha256=self.source_sha256)
+            return Mesh(self.vertices, triangles, self.source, self.source_sha256, self.notes)
         except MeshError as fault:
             raise TreeFileError(self.place, str(fault), "build it again from the mesh") from fault
 
@@ -233,6 +233,11 @@ class TreeFacts:
     def source_sha256(self) -> str | None:
         """SHA-256 of the mesh file's bytes, or None."""
         return self._made.description.source_sha256
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What of the mesh file was taken with a change, a sentence each; as `mesh`."""
+        return self._made.description.notes
 
     @property
     def tool_version(self) -> str:

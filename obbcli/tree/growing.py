@@ -84,6 +84,7 @@ class Growth:
             source=None if mesh.source is None else Path(mesh.source).name,
             source_sha256=mesh.sha256,
             tool_version=__version__,
+            notes=mesh.notes,
         )
         self._builder = kernels.TreeBuilder(
             mesh.vertices,

@@ -27,6 +27,7 @@ class TreeHead:
     Attributes:
         triangle_count: how many triangles its mesh has.
         node_count: how many boxes it holds.
+        notes: what of the mesh file was taken with a change, a sentence each.
 
     Raises:
         TreeFileError: no tree file, another version, or damaged in its header.
@@ -42,6 +43,7 @@ class TreeHead:
         self._surface = header.surface
         self.triangle_count = header.triangle_count
         self.node_count = header.node_count
+        self.notes = header.description.notes
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:

@@ -53,6 +53,7 @@ class Description:
         source: name of the mesh file; None for a mesh made in code.
         source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None likewise.
         tool_version: the obbtree that built it.
+        notes: what of the mesh file was taken with a change, a sentence each.
     """
 
     fit: str
@@ -62,6 +63,7 @@ class Description:
     source: str | None
     source_sha256: str | None
     tool_version: str
+    notes: tuple[str, ...] = ()
 
 
 class Surface(NamedTuple):
@@ -146,15 +148,11 @@ def checked_header(data: memoryview, size: int, name: str) -> Header:
         FIXED.unpack_from(data)
     )
     if version != VERSION:
-        raise TreeFileError(
-            name,
-            f"is of version {version}, this obbtree reads version {VERSION}",
-            "build it again, or use a newer obbtree",
-        )
+        fault = f"is of version {version}, this obbtree reads version {VERSION}"
+        raise TreeFileError(name, fault, "build it again, or use a newer obbtree")
     if file_bytes != size:
-        raise TreeFileError(
-            name, f"is {size} bytes long, its header says {file_bytes}", "build it again"
-        )
+        fault = f"is {size} bytes long, its header says {file_bytes}"
+        raise TreeFileError(name, fault, "build it again")
     if not FIXED.size <= header_bytes <= len(data) or crc != _header_crc(data[:header_bytes]):
         raise TreeFileError(name, "is damaged in its header", "build it again")
     nodes, triangles, vertices = counts
@@ -197,32 +195,35 @@ def _description(text: bytes, name: str) -> tuple[Description, Surface]:
         "tool_version": str,
         "bounds": list,
         "surface_centroid": list,
+        "notes": list,
     }
     try:
-        fields = json.loads(text)
+        fields = {"notes": []} | json.loads(text)
         sound = fields.keys() == types.keys() and all(
             isinstance(fields[key], kind) and not isinstance(fields[key], bool)
             for key, kind in types.items()
         )
-    except (ValueError, AttributeError, RecursionError) as fault:
+    except (ValueError, TypeError, RecursionError) as fault:
         raise TreeFileError(name, "has a description that is no JSON object") from fault
     if not sound:
         raise TreeFileError(name, "lacks something in its description", "build it again")
     bounds, centroid = fields.pop("bounds"), fields.pop("surface_centroid")
     if not _is_surface(bounds, centroid):
         raise TreeFileError(name, "says of its surface what no mesh has", "build it again")
+    notes = fields["notes"] = tuple(fields["notes"])
     description = Description(**fields)
     allowed = {
         "fit": description.fit in get_args(Fit),
         "split": description.split in get_args(Split),
         "leaf_size": description.leaf_size >= 1,
         "max_depth": description.max_depth is None or description.max_depth >= 0,
+        # Sentences that a terminal can show.
+        "notes": all(isinstance(note, str) and note.isprintable() for note in notes),
     }
     for field, is_allowed in allowed.items():
         if not is_allowed:
-            raise TreeFileError(
-                name, f"says that {field} is {fields[field]!r}, which no tree has", "build it again"
-            )
+            wrong = f"says that {field} is {fields[field]!r}, which no tree has"
+            raise TreeFileError(name, wrong, "build it again")
     return description, Surface((tuple(bounds[0]), tuple(bounds[1])), tuple(centroid))
 
 
@@ -259,7 +260,9 @@ def pack_header(
     # Not at hand before: questions about meshes start without it.
     import json
 
-    text = json.dumps(asdict(description) | surface._asdict()).encode()
+    fields = asdict(description) | surface._asdict()
+    # No notes are no key, so that every reader of version 1 takes the file.
+    text = json.dumps({k: v for k, v in fields.items() if v or k != "notes"}).encode()
     table = checksums.astype("<u4", copy=False).tobytes()
     header_bytes = round_up(FIXED.size + len(text) + len(table))
     fixed = FIXED.pack(

@@ -207,6 +207,7 @@ def test_collide_reads_one_body_from_standard_input(here, obbtree, monkeypatch, 
         "path": "-",
         "sha256": hashlib.sha256(data).hexdigest(),
         "triangle_count": 12,
+        "notes": [],
     }
 
 

@@ -223,10 +223,12 @@ def _record(
     asked = found.asked
     stats = zip(asked.bodies, answer.stats.bodies, strict=True)
     triangles = {str(body.body.shape): part.triangle_count for body, part in stats}
+    shapes = zip(asked.bodies, asked.shapes, strict=True)
+    notes = {str(body.body.shape): shape.notes for body, shape in shapes}
     meshes = []
     for path in mesh_paths(asked):
         digest = None if stamps is None else file_sha256(path, stamps[path])
-        meshes.append(Source(path, digest, triangles[path]))
+        meshes.append(Source(path, digest, triangles[path], notes[path]))
     is_hashed = stamps is not None
     return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
 

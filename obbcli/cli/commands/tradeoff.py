@@ -197,7 +197,7 @@ def _read(
         count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
         if digest is None and asked.common.json:
             digest = file_sha256(name, stamp)
-        found[name] = shape, Source(name, digest, count)
+        found[name] = shape, Source(name, digest, count, shape.notes)
     (a, source_a), (b, source_b) = found[asked.a], found[asked.b]
     return (a, b), (source_a, source_b)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from obbcli.mesh.formats.polygons import fans
+from obbcli.mesh.formats.text import counted, its
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -84,6 +85,23 @@ def surface(blocks: Iterable[tuple[str, Any]], points: NDArray[np.float64]) -> N
     faces, counts = _stacked(solid)
     once = _met_once(given, faces)
     return fans(*_unpadded(*_stacked([(given, given_counts), (faces[once], counts[once])])))
+
+
+def changes(blocks: Iterable[tuple[str, Any]]) -> list[str]:
+    """Return what `surface` does not take as it stands in the file, a sentence each."""
+    volumes = curved = 0
+    for name, cells in blocks:
+        kind = _LAGRANGE.get(name, name).rstrip("0123456789")
+        faces = _VOLUMES.get(kind, ())
+        least = _SURFACES.get(kind) or len({corner for face in faces for corner in face})
+        volumes += len(cells) if kind in _VOLUMES or kind == "polyhedron" else 0
+        curved += len(cells) if least and np.shape(cells)[-1] > least else 0
+    notes = []
+    if volumes:
+        notes.append(f"{counted(volumes, 'volume cell')} taken as {its(volumes)} boundary")
+    if curved:
+        notes.append(f"{counted(curved, 'curved cell')} flattened to {its(curved)} corners")
+    return notes
 
 
 def _corners(name: str, cells: Any, least: int) -> NDArray[np.int64]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.formats.cell_surface import UnknownCellError, surface
+from obbcli.mesh.formats.cell_surface import UnknownCellError, changes, surface
 from obbcli.mesh.formats.claimed_counts import check_claims, check_count
 from obbcli.mesh.formats.meshio_guard import ending_files, fenced
 
@@ -50,11 +50,14 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
         for number, (name, data) in enumerate(blocks):
             _check_indices(source, f"cell block {number} ({name})", data, len(points))
         try:
-            return points, surface(blocks, points)
+            triangles = surface(blocks, points)
         except UnknownCellError as fault:
             raise source.error(
                 f"cells of type {fault} are not read", "convert them to triangles or tetrahedra"
             ) from fault
+        for note in changes(blocks):
+            source.note(note)
+        return points, triangles
 
     return read
 

@@ -58,6 +58,16 @@ def shown(word: bytes) -> str:
     return text if len(word) <= _SHOWN else f"{text}..."
 
 
+def counted(count: int, what: str) -> str:
+    """Return a count as notes have it: "1 quad", "12 quads"."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def its(count: int) -> str:
+    """Return the word for what belongs to so many things."""
+    return "its" if count == 1 else "their"
+
+
 def uniform_words(lines: list[bytes], width: int) -> list[bytes] | None:
     """Return the words of all lines in one list where each has `width` words and no underscore.
 

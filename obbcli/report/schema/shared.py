@@ -124,7 +124,9 @@ DEFINITIONS: dict[str, Schema] = {
             "path": told(TEXT, "as it was written; - is standard input"),
             "sha256": told(or_null(SHA256), "of the file's bytes; null where they were not read"),
             "triangle_count": told(or_null(COUNT), "null where there is none to count"),
+            "notes": told(list_of(TEXT), "what of it was taken with a change, a sentence each"),
         },
+        optional=("notes",),  # documents written before it came have none
         description="A file that was asked about.",
     ),
     "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),
