@@ -19,9 +19,9 @@ if TYPE_CHECKING:
         Contact,
         Distance,
         FirstContact,
-        QueryStats,
         Status,
     )
+    from obbcli.answers.counts import QueryStats
     from obbcli.errors import (
         MeshError,
         MotionError,
@@ -62,7 +62,7 @@ _HOMES = {
     "ObbTree": "tree.tree",
     "Pose": "motion.pose",
     "Query": "questions.first_contact",
-    "QueryStats": "answers.collision",
+    "QueryStats": "answers.counts",
     "Scene": "scene",
     "SceneBody": "scene",
     "SceneContact": "scene",

@@ -20,7 +20,7 @@ from obbcli import Body, Mesh, Motion, ObbTree, Pose, kernels
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from obbcli.answers.contact import QueryStats
+    from obbcli.answers.counts import QueryStats
 
     Counts = tuple[int, int, int, int]
 

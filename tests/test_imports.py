@@ -60,6 +60,7 @@ NEEDED = {
     "obbcli.accuracy",
     "obbcli.answers",
     "obbcli.answers.collision",
+    "obbcli.answers.counts",
     "obbcli.arrays",
     "obbcli.cli",
     "obbcli.cli.app",

@@ -8,13 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from obbcli.answers.counts import QueryStats
 from obbcli.errors import UnresolvedError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     _Counts = tuple[int, int, int, int, int, int, int, int]
     # What `Collision.at_rest` takes.
     Found = tuple[bool, bool, float, tuple[int, int] | None, float, _Counts]
@@ -44,33 +43,6 @@ class Status(str, Enum):
 _SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
 _UNRESOLVED = Status.UNRESOLVED
 _new = object.__new__
-
-
-class QueryStats(NamedTuple):
-    """What a question cost.
-
-    Attributes:
-        box_tests: pairs of boxes tested.
-        triangle_tests: pairs of triangles tested.
-        exact_triangle_tests: those of them that exact arithmetic had to decide.
-        pops: pairs taken from the queue or stack.
-        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
-            is asked for.
-        nodes_built_b: the same for B.
-        nodes_possible_a: nodes that A's tree can have.
-        nodes_possible_b: the same for B.
-        seconds: s of wall time by stage.
-    """
-
-    box_tests: int
-    triangle_tests: int
-    exact_triangle_tests: int
-    pops: int
-    nodes_built_a: int
-    nodes_built_b: int
-    nodes_possible_a: int
-    nodes_possible_b: int
-    seconds: Mapping[str, float]
 
 
 @dataclass(frozen=True, init=False)

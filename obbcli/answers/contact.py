@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from obbcli.answers.collision import Collision, Inner, QueryStats, Status, is_contact
+from obbcli.answers.collision import Collision, Inner, Status, is_contact
+from obbcli.answers.counts import QueryStats
 
 __all__ = [
     "Collision",

@@ -16,7 +16,8 @@ from obbcli.report.contacts import Listing
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.answers.contact import Contact, FirstContact, QueryStats
+    from obbcli.answers.contact import Contact, FirstContact
+    from obbcli.answers.counts import QueryStats
     from obbcli.cli.options.placement import Question
     from obbcli.motion.body import Body
     from obbcli.questions.search import Search

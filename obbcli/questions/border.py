@@ -8,7 +8,7 @@ import os
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.answers.collision import QueryStats
+from obbcli.answers.counts import QueryStats
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.mesh import Mesh
 from obbcli.motion.motion import PathMotion

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Contact, FirstContact, QueryStats, Status
+from obbcli.answers.contact import Contact, FirstContact, Status
 from obbcli.motion.body import as_body
 from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import (
@@ -40,6 +40,7 @@ from obbcli.questions.legs.sampled import SampledQueries
 from obbcli.questions.legs.through_poses import LegQueries, legs_of
 
 if TYPE_CHECKING:
+    from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body, Shape
     from obbcli.questions.legs.relay import Asker, Counts, Relay
 

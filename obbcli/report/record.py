@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
-    from obbcli.answers.contact import QueryStats
+    from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body
     from obbcli.motion.pose import Pose
 

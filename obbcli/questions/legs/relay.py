@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from obbcli.accuracy import Accuracy
-    from obbcli.answers.contact import QueryStats
+    from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body
     from obbcli.questions.border import Trees
     from obbcli.questions.first_contact import Query

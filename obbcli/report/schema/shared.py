@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import get_args
 
 from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
-from obbcli.answers.collision import QueryStats, Status
+from obbcli.answers.collision import Status
 from obbcli.answers.contact import Contact
+from obbcli.answers.counts import Counts, QueryStats
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.words import (
     AMOUNT,
@@ -82,7 +83,7 @@ CONTACT_FIELDS = documented(
 )
 
 # What every kind of search counts.
-COUNTERS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
+COUNTERS = Counts._fields
 STATS_FIELDS = documented(
     QueryStats,
     dict.fromkeys(

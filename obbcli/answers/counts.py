@@ -1,0 +1,70 @@
+"""What a question cost: the four counters of a search, and with them trees and wall time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Counts(NamedTuple):
+    """What every search counts, in the order in which the kernels tell it: `Counts(*q.counts())`.
+
+    Two of them add up, and the difference of two is what was spent between.
+
+    Attributes:
+        box_tests: pairs of boxes tested.
+        triangle_tests: pairs of triangles tested.
+        exact_triangle_tests: those of them that exact arithmetic had to decide.
+        pops: pairs taken from the queue or stack.
+
+    Example:
+        >>> Counts(5, 2, 0, 4) + Counts(1, 1, 1, 1) - Counts(pops=3)
+        Counts(box_tests=6, triangle_tests=3, exact_triangle_tests=1, pops=2)
+    """
+
+    box_tests: int = 0
+    triangle_tests: int = 0
+    exact_triangle_tests: int = 0
+    pops: int = 0
+
+    def __add__(self, other: Counts) -> Counts:  # type: ignore[override]  # not joined, but added
+        """Return what two searches cost together."""
+        return Counts(*(mine + its for mine, its in zip(self, other, strict=True)))
+
+    def __sub__(self, other: Counts) -> Counts:
+        """Return what this cost beyond the other."""
+        return Counts(*(mine - its for mine, its in zip(self, other, strict=True)))
+
+
+class QueryStats(NamedTuple):
+    """What a question cost.
+
+    Attributes:
+        box_tests: pairs of boxes tested.
+        triangle_tests: pairs of triangles tested.
+        exact_triangle_tests: those of them that exact arithmetic had to decide.
+        pops: pairs taken from the queue or stack.
+        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
+            is asked for.
+        nodes_built_b: the same for B.
+        nodes_possible_a: nodes that A's tree can have.
+        nodes_possible_b: the same for B.
+        seconds: s of wall time by stage.
+    """
+
+    box_tests: int
+    triangle_tests: int
+    exact_triangle_tests: int
+    pops: int
+    nodes_built_a: int
+    nodes_built_b: int
+    nodes_possible_a: int
+    nodes_possible_b: int
+    seconds: Mapping[str, float]
+
+    @property
+    def counts(self) -> Counts:
+        """Return what the search itself counted."""
+        return Counts(self.box_tests, self.triangle_tests, self.exact_triangle_tests, self.pops)
