@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import signal
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 import pytest
 import scenes
+from heard_signals import HeardError, ask_until_heard
 from oracles_mesh import mesh_pairs
 from tree_meshes import bumpy_grid, needles, soup
 
@@ -98,24 +98,11 @@ def test_timeout_leaves_the_answer_open() -> None:
 
 
 def test_signals_are_heard_while_a_long_question_runs() -> None:
-    heard = []
-
-    def hear(*_: object) -> None:
-        heard.append(True)
-        if len(heard) == 3:
-            raise InterruptedError("enough")
-
-    # Tens of millions of pairs to test: nobody waits for them. Signals that nobody hears meanwhile
-    # are one when the question has ended.
+    # Tens of millions of pairs to test: nobody waits for them.
     crowd = ObbTree.build(Mesh(*needles(6000)))
-    before = signal.signal(signal.SIGALRM, hear)
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
-        with pytest.raises(InterruptedError, match="enough"):
-            obbcli.triangle_pairs(crowd, crowd)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+
+    with pytest.raises(HeardError):
+        ask_until_heard(lambda: obbcli.triangle_pairs(crowd, crowd))
 
 
 def test_pair_limit_gives_so_many_of_the_pairs_sorted() -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
+import socket
 import subprocess
 import sys
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,23 @@ stream._CHUNK_SECONDS = 0.02
 cluster._PATIENCE = 1
 sys.exit(main(sys.argv[1:]))
 """
+# The same, which stops itself as soon as it has written some rows.
+STOPPED = (
+    """
+import os, signal
+from obbcli.sweeps import results_file
+
+append = results_file.ResultsFile.append
+
+def stopped(self, block):
+    append(self, block)
+    results_file.ResultsFile.append = append
+    os.kill(os.getpid(), signal.SIGSTOP)
+
+results_file.ResultsFile.append = stopped
+"""
+    + RUN
+)
 CLUSTER = """
 import distributed
 with distributed.LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=":0") as cluster:
@@ -58,10 +76,10 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, bytes]:
     return here, (here / "whole.jsonl").read_bytes()
 
 
-def start(here: Path, *words: str) -> subprocess.Popen[str]:
+def start(here: Path, *words: str, code: str = RUN) -> subprocess.Popen[str]:
     """Start a sweep in a process of its own."""
     return subprocess.Popen(
-        [sys.executable, "-c", RUN, *WORDS, "--quiet", *words],
+        [sys.executable, "-c", code, *WORDS, "--quiet", *words],
         cwd=here,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -72,12 +90,12 @@ def start(here: Path, *words: str) -> subprocess.Popen[str]:
 def test_killed_worker_loses_nothing(swept):
     here, whole = swept
     path = here / "killed.jsonl"
-    child = start(here, "-o", path.name, "--workers", "2")
+    child = start(here, "-o", path.name, "--workers", "2", code=STOPPED)
 
-    while child.poll() is None and not (path.exists() and path.stat().st_size > len(whole) // 16):
-        time.sleep(0)
-    # Nothing is written until one of the workers is gone.
-    child.send_signal(signal.SIGSTOP)
+    # Nothing more is written until one of the workers is gone.
+    state = os.waitid(os.P_PID, child.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+    assert state is not None
+    assert state.si_code == os.CLD_STOPPED
     workers = [
         one
         for one in psutil.Process(child.pid).children(recursive=True)
@@ -88,7 +106,7 @@ def test_killed_worker_loses_nothing(swept):
     child.send_signal(signal.SIGCONT)
     told = child.communicate()[1]
 
-    assert size < len(whole)
+    assert 0 < size < len(whole)
     assert len(workers) == 2
     assert (child.returncode, told) == (3, "")
     assert path.read_bytes() == whole
@@ -113,11 +131,15 @@ def test_cluster_that_runs_goes_on_with_a_sweep(swept):
 
 def test_scheduler_that_is_not_there_is_one_clear_error(swept):
     here, _ = swept
-    child = start(here, "-o", "none.jsonl", "--scheduler", "tcp://127.0.0.1:9")
-    told = child.communicate()[1]
+    # A port that is taken, and at which nobody listens.
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
+        child = start(here, "-o", "none.jsonl", "--scheduler", address)
+        told = child.communicate()[1]
 
     assert child.returncode == 3
-    assert told.startswith("error: scheduler tcp://127.0.0.1:9: does not answer: ")
+    assert told.startswith(f"error: scheduler {address}: does not answer: ")
     assert told.endswith("; start one with 'dask scheduler', or use --workers N\n")
     assert told.count("\n") == 1
     assert not (here / "none.jsonl").exists()

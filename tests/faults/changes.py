@@ -11,19 +11,18 @@ import os
 import random
 import signal
 import tempfile
+from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from cube_files import CUBE_FACES, cube, stl
-from faults.world import Ended, fill, finish, start, told_in_one_line
+from faults.world import NEVER, Ended, calls_of, fill, finish, start, told_in_one_line
 
 from obbcli import Mesh, ObbTree, load_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-
-_NEVER = f"SIGCONT@{1 << 60}"
 
 
 def _halve(path: Path) -> None:
@@ -94,21 +93,47 @@ def changed(count: int, seed: int) -> Iterator[Changed]:
     for number in range(count):
         name = KINDS[number % len(KINDS)]
         change = list(CHANGES)[number // len(KINDS) % len(CHANGES)]
-        words = ("collide", name, "pinion.stl", "--rotate", "0", "0", "0.003", "--json")
-        with tempfile.TemporaryDirectory() as place:
-            folder = Path(place) / "world"
-            folder.mkdir()
-            fill(folder)
-            ObbTree.build(load_mesh(folder / "gear.stl")).save(folder / "gear.obbt")
+        with _world() as folder:
             if name not in lengths:
-                lengths[name] = finish(folder, start(folder, words, fault=_NEVER)).calls
+                lengths[name] = _length(folder, name)
             # What comes first are imports.
             moment = rng.randrange(lengths[name] // 2, lengths[name])
-            yield _change(folder / name, words, change, f"SIGSTOP@{moment}")
+            yield _change(folder / name, change, moment)
 
 
-def _change(path: Path, words: tuple[str, ...], change: str, moment: str) -> Changed:
-    """Change a file while a command is stopped."""
+def removed_at_both_ends() -> Iterator[Changed]:
+    """Remove each file before anything is read, and when all is."""
+    for name in KINDS:
+        with _world() as folder:
+            length = _length(folder, name)
+            yield _change(folder / name, "removed", 1)
+        with _world() as folder:
+            yield _change(folder / name, "removed", length)
+
+
+@contextmanager
+def _world() -> Iterator[Path]:
+    """Give a folder with the files of `fill` and the tree of the gear."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "world"
+        folder.mkdir()
+        fill(folder)
+        ObbTree.build(load_mesh(folder / "gear.stl")).save(folder / "gear.obbt")
+        yield folder
+
+
+def _words(name: str) -> tuple[str, ...]:
+    return ("collide", name, "pinion.stl", "--rotate", "0", "0", "0.003", "--json")
+
+
+def _length(folder: Path, name: str) -> int:
+    """Return how many calls the command makes that reads a file."""
+    return calls_of(lambda: finish(folder, start(folder, _words(name), fault=NEVER)))
+
+
+def _change(path: Path, change: str, call: int) -> Changed:
+    """Change a file while a command is stopped at a call."""
+    words, moment = _words(path.name), f"SIGSTOP@{call}"
     truth = {_digest(path): (11_520, "overlap_at_start")}
     process = start(path.parent, words, fault=moment)
     state = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)

@@ -13,7 +13,16 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from faults.world import Ended, damage, fill, finish, start, told_in_one_line
+from faults.world import (
+    NEVER,
+    Ended,
+    calls_of,
+    damage,
+    fill,
+    finish,
+    start,
+    told_in_one_line,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -71,7 +80,12 @@ class Outcome(NamedTuple):
 
 
 def at_calls(
-    sign: signal.Signals, count: int, seed: int, commands: Sequence[Command] = COMMANDS
+    sign: signal.Signals,
+    count: int,
+    seed: int,
+    commands: Sequence[Command] = COMMANDS,
+    *,
+    share: float = 1.0,
 ) -> Iterator[Outcome]:
     """Send a signal at the N-th call, once for each of so many moments, one command after another.
 
@@ -80,14 +94,15 @@ def at_calls(
         count: how often.
         seed: of the moments.
         commands: that are interrupted.
+        share: moments are drawn from this first part of the calls that a command makes.
     """
     rng = random.Random(seed)  # moments, not secrets
     lengths: dict[Command, int] = {}
     for number in range(count):
         command = commands[number % len(commands)]
         if command not in lengths:
-            lengths[command] = _run(command, fault=f"{sign.name}@{1 << 60}")[0].calls
-        moment = f"{sign.name}@{rng.randrange(1, lengths[command])}"
+            lengths[command] = calls_of(lambda one=command: _run(one, fault=NEVER)[0])
+        moment = f"{sign.name}@{rng.randrange(1, int(share * lengths[command]))}"
         yield _judged(command, moment, sign, *_run(command, fault=moment, sign=sign))
 
 

@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 
 _LAUNCH = Path(__file__).with_name("launch.py")
 _SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
+#: A fault that counts calls and does nothing: its signal would come after all of them.
+NEVER = f"SIGCONT@{1 << 60}"
 _QUESTIONS = 400
+# Sets of strings are walked in the same order in every run, so that runs make the same calls.
+_REPEATABLE = {"PYTHONHASHSEED": "0"}
 _SCENE = b"""duration = 2.0
 body = [
   { name = "still", mesh = "cube.stl" },
@@ -113,7 +117,7 @@ def start(
         limit: called in the process before it is one of Python's.
         environment: what is other than here; None takes a variable away.
     """
-    changed = {**os.environ, **(environment or {})}
+    changed = {**os.environ, **_REPEATABLE, **(environment or {})}
 
     def prepare() -> None:
         _as_a_terminal_would()
@@ -141,6 +145,17 @@ def finish(folder: Path, process: subprocess.Popen[bytes]) -> Ended:
     calls = int(told[1]) if len(told) == 2 else 0
     texts = (stream.decode(errors="backslashreplace") for stream in (out, err))
     return Ended(process.returncode, *texts, bool(told), calls)
+
+
+def calls_of(run: Callable[[], Ended]) -> int:
+    """Return how many calls a command makes when it runs to its end.
+
+    Args:
+        run: runs it with the fault `NEVER`. It is called twice, because the first run may also
+            compile modules, and later runs find them compiled.
+    """
+    run()
+    return run().calls
 
 
 def _events(folder: Path) -> Path:
