@@ -14,14 +14,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from obbcli import primitives
     from obbcli.accuracy import Accuracy
-    from obbcli.answers.contact import (
-        Collision,
-        Contact,
-        Distance,
-        FirstContact,
-        Status,
-    )
+    from obbcli.answers.collision import Collision
+    from obbcli.answers.contact import Contact, FirstContact
     from obbcli.answers.counts import QueryStats
+    from obbcli.answers.distance import Distance
+    from obbcli.answers.status import Status
     from obbcli.errors import (
         MeshError,
         MotionError,
@@ -52,7 +49,7 @@ _HOMES = {
     "Body": "motion.body",
     "Collision": "answers.collision",
     "Contact": "answers.contact",
-    "Distance": "answers.contact",
+    "Distance": "answers.distance",
     "FirstContact": "answers.contact",
     "Mesh": "mesh",
     "MeshError": "errors",
@@ -68,7 +65,7 @@ _HOMES = {
     "SceneContact": "scene",
     "SceneError": "errors",
     "Stability": "study.stability.rows",
-    "Status": "answers.collision",
+    "Status": "answers.status",
     "Tradeoff": "study.tradeoff.trials",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",

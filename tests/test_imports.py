@@ -61,6 +61,7 @@ NEEDED = {
     "obbcli.answers",
     "obbcli.answers.collision",
     "obbcli.answers.counts",
+    "obbcli.answers.status",
     "obbcli.arrays",
     "obbcli.cli",
     "obbcli.cli.app",

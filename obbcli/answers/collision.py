@@ -1,43 +1,20 @@
-"""Whether bodies touch: status words, the yes or no, and what it cost to know, all frozen.
-
-What every question needs; the places and times of the others are in `contact`.
-"""
+"""Whether two bodies touch: the yes or no, frozen. When and where they do is in `contact`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 from obbcli.answers.counts import QueryStats
-from obbcli.errors import UnresolvedError
+from obbcli.answers.status import Status, is_contact
 
 if TYPE_CHECKING:
+    from obbcli.answers.status import Inner
+
     _Counts = tuple[int, int, int, int, int, int, int, int]
     # What `Collision.at_rest` takes.
     Found = tuple[bool, bool, float, tuple[int, int] | None, float, _Counts]
-
-# The body that lies inside the other, or a part of it does.
-Inner: TypeAlias = Literal["a", "b"]
-
-
-class Status(str, Enum):
-    """How a question ended; the values are the words of the JSON documents."""
-
-    SEPARATED = "separated"
-    """No contact in the whole closed interval: a proof, unless the answer was sampled."""
-    CONTACT = "contact"
-    """First contact at a time later than 0."""
-    OVERLAP_AT_START = "overlap_at_start"
-    """Contact at t = 0, touching included; also of bodies at rest."""
-    UNRESOLVED = "unresolved"
-    """A limit was reached before the answer was known."""
-
-    def __str__(self) -> str:
-        """Return the bare word."""
-        return self.value
-
 
 # Looking them up in the enumeration takes as long as a test of two boxes.
 _SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
@@ -137,18 +114,3 @@ class Collision:
 _late = cached_property(Collision._stats)
 _late.__set_name__(Collision, "stats")
 Collision.stats = _late  # type: ignore[assignment]
-
-
-def is_contact(status: Status) -> bool:
-    """Return whether bodies touch.
-
-    Raises:
-        UnresolvedError: a limit was reached before the answer was known.
-    """
-    if status is Status.UNRESOLVED:
-        raise UnresolvedError(
-            "collides",
-            "the question stopped at a limit before its answer was known",
-            "raise max_iterations or timeout",
-        )
-    return status is not Status.SEPARATED

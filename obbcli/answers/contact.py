@@ -1,26 +1,14 @@
-"""What a question answers: contacts and distances, with what `collision` has of them, all frozen.
-
-Kernels and queries fill them, reports read them; nothing here computes.
-"""
+"""When and where two bodies touch: one contact, and the first of a question, both frozen."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from obbcli.answers.collision import Collision, Inner, Status, is_contact
-from obbcli.answers.counts import QueryStats
+from obbcli.answers.status import Inner, Status, is_contact
 
-__all__ = [
-    "Collision",
-    "Contact",
-    "Distance",
-    "FirstContact",
-    "Inner",
-    "QueryStats",
-    "Status",
-    "Vector",
-]
+if TYPE_CHECKING:
+    from obbcli.answers.counts import QueryStats
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -107,48 +95,3 @@ class FirstContact(Contact):
         made = object.__new__(cls)
         vars(made).update(vars(contact), stats=stats)
         return made
-
-
-@dataclass(frozen=True, init=False)
-class Distance:
-    """How far apart two bodies are at rest.
-
-    Attributes:
-        distance: mesh units; the upper one of `bounds`. 0 where the surfaces touch, and only there.
-        bounds: mesh units; (lo, hi), both proven. A limit that ended the search leaves them wide.
-        point_a: where on A hi was measured, world coordinates, rounded to double. Of bodies that
-            touch a common point.
-        point_b: where on B.
-        triangle_a: row of A's mesh file that `point_a` lies in.
-        triangle_b: row of B's mesh file that `point_b` lies in.
-        stats: what the question cost.
-    """
-
-    distance: float
-    bounds: tuple[float, float]
-    point_a: Vector
-    point_b: Vector
-    triangle_a: int
-    triangle_b: int
-    stats: QueryStats
-
-    def __init__(
-        self,
-        *,
-        distance: float,
-        bounds: tuple[float, float],
-        point_a: Vector,
-        point_b: Vector,
-        triangle_a: int,
-        triangle_b: int,
-        stats: QueryStats,
-    ) -> None:
-        # As `Collision`: the dataclass's own way takes longer.
-        fields = vars(self)
-        fields["distance"] = distance
-        fields["bounds"] = bounds
-        fields["point_a"] = point_a
-        fields["point_b"] = point_b
-        fields["triangle_a"] = triangle_a
-        fields["triangle_b"] = triangle_b
-        fields["stats"] = stats

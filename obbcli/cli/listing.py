@@ -7,7 +7,7 @@ import time
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.cli.boundary import CancelledError
 from obbcli.cli.progress import proving
 from obbcli.errors import UnresolvedError

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Contact, Status
+from obbcli.answers.contact import Contact
+from obbcli.answers.status import Status
 from obbcli.errors import MotionError, UnresolvedError
 from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, as_body

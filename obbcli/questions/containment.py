@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.answers.contact import Contact, Status
+from obbcli.answers.contact import Contact
+from obbcli.answers.status import Status
 from obbcli.errors import MeshError
 from obbcli.mesh.topology import bad_seams
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from obbcli.answers.contact import Inner
+    from obbcli.answers.status import Inner
     from obbcli.mesh import Mesh
     from obbcli.motion.body import Body
     from obbcli.questions.border import Trees

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Collision, Contact, FirstContact, Status
+from obbcli.answers.collision import Collision
+from obbcli.answers.contact import Contact, FirstContact
+from obbcli.answers.status import Status
 from obbcli.questions.border import POPS_A_SLICE, limits_of, refused, trees_of
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Distance
+from obbcli.answers.distance import Distance
 from obbcli.motion.body import as_body
 from obbcli.questions.border import (
     POPS_A_SLICE,

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Contact, FirstContact, Status
+from obbcli.answers.contact import Contact, FirstContact
+from obbcli.answers.status import Status
 from obbcli.motion.body import as_body
 from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import (

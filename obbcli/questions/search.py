@@ -10,7 +10,7 @@ import time
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.errors import UnresolvedError
 from obbcli.questions.border import POPS_A_SLICE, damaged
 from obbcli.questions.legs.relay import on_clock, sum_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.answers.collision import Status
+from obbcli.answers.status import Status
 from obbcli.report.record import answer_document, note_rows
 from obbcli.report.table import Table, count, length, seconds
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from obbcli.answers.contact import Collision
+    from obbcli.answers.collision import Collision
     from obbcli.report.record import Record, Setting
 
 _SENTENCES = {

@@ -9,7 +9,7 @@ from obbcli.report.record import answer_document
 from obbcli.report.table import Table, point
 
 if TYPE_CHECKING:
-    from obbcli.answers.contact import Distance
+    from obbcli.answers.distance import Distance
     from obbcli.report.record import Record, Setting
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.motion.body import Body
 from obbcli.report.collide import triangle_tests
 from obbcli.report.contacts import contact_part

@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.answers.contact import Contact, Status
+from obbcli.answers.status import Status
 from obbcli.errors import MotionError, UnresolvedError
 from obbcli.questions.border import time_tolerance
 from obbcli.questions.contacts import search_contacts
@@ -20,6 +20,7 @@ from obbcli.scene.results import SceneContact, SceneStats
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from obbcli.answers.contact import Contact
     from obbcli.questions.legs.relay import Counts
     from obbcli.scene.pairs import Asked
 

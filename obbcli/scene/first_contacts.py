@@ -11,7 +11,8 @@ import time
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.answers.contact import Contact, Status
+from obbcli.answers.contact import Contact
+from obbcli.answers.status import Status
 from obbcli.errors import MotionError
 from obbcli.questions.describe import unresolved
 from obbcli.questions.first_contact import Query

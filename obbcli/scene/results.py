@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from obbcli.answers.contact import Contact, Status
+    from obbcli.answers.contact import Contact
+    from obbcli.answers.status import Status
 
 
 @dataclass(frozen=True)

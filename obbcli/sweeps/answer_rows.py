@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 
 if TYPE_CHECKING:
     from obbcli.answers.contact import Contact, FirstContact

@@ -15,7 +15,7 @@ from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.errors import ObbError
 from obbcli.sweeps.result_lines import ERROR, tallied
 

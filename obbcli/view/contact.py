@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.mesh.measure import diagonal
 from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import duration_of, pivot_of

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from obbcli.answers.contact import Collision
+    from obbcli.answers.collision import Collision
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.accuracy import AccuracyOptions
     from obbcli.cli.options.option import CommonOptions

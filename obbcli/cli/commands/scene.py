@@ -180,7 +180,7 @@ def _pair(text: str, names: set[str]) -> tuple[str, str]:
 
 def _run(found: Course, wanted: _Wanted, *, progress: bool) -> Answer:
     """Return the answer; after Ctrl-C what is known by then."""
-    from obbcli.answers.contact import Status
+    from obbcli.answers.status import Status
     from obbcli.report.scene import Answer
 
     contacts: list[SceneContact] = []

@@ -10,7 +10,8 @@ from abc import ABC, abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.answers.contact import FirstContact, Status
+from obbcli.answers.contact import FirstContact
+from obbcli.answers.status import Status
 from obbcli.questions.border import SECONDS_A_SLICE
 
 if TYPE_CHECKING:

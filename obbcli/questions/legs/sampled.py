@@ -9,7 +9,8 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from obbcli.answers.contact import FirstContact, Status
+from obbcli.answers.contact import FirstContact
+from obbcli.answers.status import Status
 from obbcli.questions.legs.relay import Relay
 from obbcli.questions.legs.steps import steps_of
 

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.answers.contact import FirstContact, Status
+from obbcli.answers.contact import FirstContact
+from obbcli.answers.status import Status
 from obbcli.motion.body import Body
 from obbcli.motion.motion import Motion, PathMotion, is_same_pose
 from obbcli.questions.border import pivot_of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from obbcli.answers.collision import Collision
-from obbcli.answers.contact import Distance
+from obbcli.answers.distance import Distance
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import get_args
 
 from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
-from obbcli.answers.collision import Status
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts, QueryStats
+from obbcli.answers.status import Status
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.words import (
     AMOUNT,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.errors import ObbError
 from obbcli.questions.first_contact import first_contact
 from obbcli.study.stability import extremes, surfaces, units

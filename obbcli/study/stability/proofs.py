@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 
 if TYPE_CHECKING:
     from obbcli.answers.contact import Contact

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
-    from obbcli.answers.contact import FirstContact, Status
+    from obbcli.answers.contact import FirstContact
+    from obbcli.answers.status import Status
 
 Outcome: TypeAlias = Literal["same", "agrees", "within bound", "unresolved", "refused", "broken"]
 

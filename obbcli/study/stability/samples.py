@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.motion.body import Body
 from obbcli.questions.collide import collide
 from obbcli.questions.distance import distance

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.motion.body import Body
 from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import pivot_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 from obbcli.errors import MotionError
 from obbcli.motion.body import as_body
 from obbcli.motion.motion import PathMotion

@@ -7,7 +7,7 @@ import statistics
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from obbcli.answers.contact import Status
+from obbcli.answers.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
