@@ -43,5 +43,60 @@ def glb(content, body=POSITIONS + INDICES):
     return struct.pack("<3I", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
+def shifted(x, y=0.0, z=0.0):
+    """Return the square somewhere else."""
+    return np.array(SQUARE) + np.array([x, y, z])
+
+
 def load(content, body=POSITIONS + INDICES):
     return load_mesh_bytes(glb(content, body), ".glb")
+
+
+class Builder:
+    """Puts arrays into a document and its binary chunk.
+
+    Args:
+        changes: keys of the document beside accessors, buffer views and buffers.
+    """
+
+    def __init__(self, **changes):
+        self.body = b""
+        self.document = {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "accessors": [],
+            "bufferViews": [],
+            **changes,
+        }
+
+    def view(self, data, **more):
+        """Return the index of a new buffer view of these bytes, on a multiple of four."""
+        self.body += b"\0" * (-len(self.body) % 4)
+        view = {"buffer": 0, "byteOffset": len(self.body), "byteLength": len(data)}
+        self.body += data
+        self.document["bufferViews"].append(view | more)
+        return len(self.document["bufferViews"]) - 1
+
+    def accessor(self, values, dtype="<f4", **more):
+        """Return the index of a new accessor of these rows."""
+        array = np.asarray(values, dtype)
+        view = self.view(array.tobytes())
+        return self.form(array.shape, dtype, bufferView=view, **more)
+
+    def form(self, shape, dtype="<f4", **more):
+        """Return the index of a new accessor that only says what its values are."""
+        width = 1 if len(shape) == 1 else shape[1]
+        kinds = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+        codes = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126, "f8": 5130}
+        accessor = {"componentType": codes[dtype[-2:]], "count": shape[0], "type": kinds[width]}
+        self.document["accessors"].append(accessor | more)
+        return len(self.document["accessors"]) - 1
+
+    def glb(self):
+        """Return the file."""
+        return glb(self.document | {"buffers": [{"byteLength": len(self.body)}]}, self.body)
+
+    def load(self):
+        """Return the mesh."""
+        return load_mesh_bytes(self.glb(), ".glb")

@@ -12,10 +12,17 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from cell_files import VOLUME_KINDS, write
+from gltf_documents import draco_square, meshopt_square, with_fallback
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gltf_files import Builder
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT / "sample_meshes"
@@ -185,6 +192,15 @@ def test_libraries_read_a_mesh_and_do_nothing_else(name: str, tmp_path: Path) ->
     write(tmp_path / name, [("tetra", np.array([[0, 1, 2, 5], [0, 2, 3, 7]]))])
 
     assert watched(tmp_path, "info", name) == (set(), set())
+
+
+@pytest.mark.parametrize("made", [draco_square, meshopt_square])
+def test_codecs_unpack_a_mesh_and_do_nothing_else(
+    made: Callable[[], Builder], tmp_path: Path
+) -> None:
+    (tmp_path / "packed.glb").write_bytes(with_fallback(made()))
+
+    assert watched(tmp_path, "info", "packed.glb") == (set(), set())
 
 
 def test_the_watch_sees_what_it_is_for(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
 from fuzz.kinds import Target, require
+from gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned, with_fallback
 from gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
 from plain_files import FILES
 
@@ -41,6 +42,7 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     uri = "data:;base64," + base64.b64encode(body).decode()
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
+    files += [(".glb", data) for data in _documents()]
     surface = [("triangle", np.array([[0, 1, 2], [0, 2, 3]]))]
     volumes = [("tetra", TETRA)], [("hexahedron", HEXAHEDRON)]
     with tempfile.TemporaryDirectory() as folder:
@@ -53,6 +55,13 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
                     path = write(Path(folder) / name, cells, POINTS, **options)
                     files.append((suffix, path.read_bytes()))
     return [bytes([suffixes.index(suffix)]) + data for suffix, data in files if suffix in suffixes]
+
+
+def _documents() -> list[bytes]:
+    """Return GLB files with morph targets, skins, instances and compressed geometry."""
+    plain = [morphing([1, 0.5]), skinned(sets=2), instanced(TRANSLATION=[[0, 0, 1], [0, 0, 2]])]
+    codecs = [draco_square(), draco_square(normalized=True)]
+    return [*(each.glb() for each in [*plain, *codecs]), with_fallback(meshopt_square())]
 
 
 def _run(suffixes: tuple[str, ...], data: bytes) -> None:

@@ -54,7 +54,8 @@ def test_gltf_refuses_a_missing_file_beside_it_and_any_beside_a_stream(tmp_path)
     path = tmp_path / "square.gltf"
     path.write_bytes(content)
 
-    with pytest.raises(MeshError, match=r"buffers\[0\]: 'gone\.bin' cannot be read"):
+    fault = r"buffers\[0\]: lies in the file 'gone\.bin', which cannot be read"
+    with pytest.raises(MeshError, match=fault):
         load_mesh(path)
     with pytest.raises(MeshError, match="name the file instead of a stream"):
         load_mesh_bytes(content, ".gltf")

@@ -1,207 +1,168 @@
-"""glTF 2.0 and its binary form GLB, read by our own strict reader.
+"""glTF 2.0 and its binary form GLB, read by our own strict reader as the specification says.
 
 trimesh takes nodes in an order that depends on its stack (the last root first) and skips triangle
-fans, sparse accessors and unknown compression without a word, so parts of a model go missing.
-Only geometry is read: positions, indices and the nodes that place them.
+fans, skins, morph weights and required extensions without a word. Only what makes and places
+surface is read: positions, indices, morph targets, skins and the nodes that place them.
 """
 
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from obbcli.mesh.formats.gltf_data import (
-    Document,
-    Json,
-    NotAsExpectedError,
-    list_in,
-    numbers_in,
-    split_glb,
-)
+from obbcli.mesh.formats.gltf_buffers import split_glb
+from obbcli.mesh.formats.gltf_data import Document
+from obbcli.mesh.formats.gltf_extensions import check_extensions
+from obbcli.mesh.formats.gltf_json import NotAsExpectedError, words_of
+from obbcli.mesh.formats.gltf_nodes import Nodes, ShownNode, instances, mirrors, transformed
+from obbcli.mesh.formats.gltf_primitives import Primitive, primitives, weights_of
+from obbcli.mesh.formats.gltf_skins import joint_matrices, skinned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
+    from obbcli.mesh.formats.gltf_json import Json
     from obbcli.mesh.source import MeshArrays, Source
 
-    Matrix = NDArray[np.float64]
-
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
-#: Compressed or instanced geometry is not decoded; leaving it out would leave out parts.
-_UNREADABLE = frozenset(
-    ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing")
-)
+#: Instances multiply what a file holds: they may fill this share of the machine's memory.
+_SHARE = 4
+_NO_NUMBERS = np.zeros(0)
 
 
 def read_gltf(source: Source) -> MeshArrays:
     """Return vertices and triangles of the document's scene, nodes in the document's order.
 
-    Nodes are taken depth first from the first root on, children in their order, and of each node's
-    mesh the primitives in theirs; matrices are applied in double precision, and a mirrored node's
-    triangles are turned over. Points and lines are left out. A document without scenes gives its
-    meshes one after another, unplaced.
+    Nodes are taken depth first from the first root on, children in their order, of each node's
+    mesh the primitives in theirs, of instances one after the other. Matrices are applied in double
+    precision, and a mirrored node's triangles are turned over. Morph targets stand at their default
+    weights, skins as their joints hold them at rest. Points and lines have no surface. A document
+    without scenes shows all its root nodes, one without nodes its meshes, unplaced.
 
     Raises:
-        MeshError: not JSON, lengths that do not fit, values out of place, compressed geometry.
+        MeshError: not JSON, another version, lengths that do not fit, values out of place, a
+            required extension that is not read, compressed geometry whose package is missing.
     """
     text, chunk = split_glb(source)
+    content = _parsed(source, text)
+    try:
+        _check_version(content)
+        document = Document(source, content, chunk)
+        check_extensions(document)
+        if document.items("animations"):
+            source.note("animations are not played")
+        return _joined(_parts(document))
+    except NotAsExpectedError as fault:
+        raise source.error(fault.fault, fault.remedy, at=fault.place) from fault
+
+
+def _parsed(source: Source, text: bytes) -> Json:
+    """Return the document, its errors in our words."""
     try:
         content = json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as fault:
-        raise source.error(f"is not glTF: {fault}", "export it again") from fault
-    try:
-        document = Document(source, content, chunk)
-        used = document.items("extensionsUsed")
-        unreadable = [x for x in used if isinstance(x, str) and x in _UNREADABLE]
-        if unreadable:
-            raise NotAsExpectedError("extensionsUsed", f"{unreadable[0]} is not read")
-        return _joined(list(_placed(document)))
-    except NotAsExpectedError as fault:
-        raise source.error(fault.fault, "export it again", at=fault.place) from fault
+    except json.JSONDecodeError as fault:
+        at = f"line {fault.lineno}, column {fault.colno}"
+        raise source.error(f"is not glTF: no JSON at {at}", "export it again") from fault
+    except UnicodeDecodeError as fault:
+        raise source.error("is not glTF: its text is no UTF-8", "export it again") from fault
+    except RecursionError as fault:
+        raise source.error("is not glTF: its JSON nests too deep", "export it again") from fault
+    except ValueError as fault:
+        raise source.error(
+            "is not glTF: it holds a number that JSON does not know", "export it again"
+        ) from fault
+    if not isinstance(content, dict) or not isinstance(content.get("asset") or {}, dict):
+        raise source.error("is missing; this is no glTF document", "export it again", at="asset")
+    return content
 
 
 def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number of JSON")
+    raise ValueError(name)
 
 
-def _joined(parts: list[MeshArrays]) -> MeshArrays:
-    """Return all parts as one."""
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in parts)]).tolist()
-    triangles = [part[1] + start for part, start in zip(parts, starts, strict=False)]
-    none = np.zeros((0, 3))
-    return (
-        np.vstack([none, *(vertices for vertices, _ in parts)]),
-        np.vstack([none.astype(np.int64), *triangles]),
-    )
+def _check_version(content: Json) -> None:
+    """Refuse other versions by name: glTF 1.0 is another format."""
+    old = isinstance(content.get("meshes"), dict) or isinstance(content.get("scenes"), dict)
+    asset = content.get("asset")
+    if asset is None and not old:
+        raise NotAsExpectedError("asset", "is missing; this is no glTF document")
+    version = (asset or {}).get("version", "1.0" if old else "2.0")
+    least = (asset or {}).get("minVersion", "2.0")
+    number = str(version).partition(".")[0]
+    if old or number != "2":
+        shown = "1.0" if old else words_of(version).strip("'")
+        raise NotAsExpectedError(
+            "asset.version", f"is glTF {shown}, only 2.0 is read", "convert it to glTF 2.0"
+        )
+    if least != "2.0":
+        fault = f"needs a reader of glTF {words_of(least)}, this one reads 2.0"
+        raise NotAsExpectedError("asset.minVersion", fault, "export it as glTF 2.0")
 
 
-def _placed(document: Document) -> Iterator[MeshArrays]:
+def _parts(document: Document) -> Iterator[MeshArrays]:
     """Yield the primitives of every node of the scene, placed."""
-    if not document.items("scenes"):
-        for mesh in range(len(document.items("meshes"))):
-            yield from _primitives(document, mesh)
+    nodes = Nodes(document)
+    meshes = len(document.items("meshes"))
+    if not document.items("scenes") and not document.items("nodes"):
+        document.source.note("has no nodes: its meshes are taken where they were modelled")
+        for mesh in range(meshes):
+            for part in primitives(document, mesh, _NO_NUMBERS):
+                yield part.vertices, part.triangles
         return
-    scene = document.item("scenes", document.content.get("scene", 0))
-    # An explicit stack: documents may nest deeper than Python recurses.
-    roots = list_in(scene, "nodes", "scene")
-    pending: list[tuple[Any, Matrix | None]] = [(root, None) for root in reversed(roots)]
-    met: set[Any] = set()
-    while pending:
-        index, outer = pending.pop()
-        node = document.item("nodes", index)
-        place = f"nodes[{index}]"
-        if index in met:
-            raise NotAsExpectedError(place, "is met twice; the nodes of a scene form a tree")
-        met.add(index)
-        matrix = _composed(outer, _local_matrix(node, place))
-        pending += [(child, matrix) for child in reversed(list_in(node, "children", place))]
-        if "mesh" in node:
-            for vertices, triangles in _primitives(document, node["mesh"]):
-                yield _transformed(vertices, triangles, matrix)
-
-
-def _primitives(
-    document: Document, index: object
-) -> Iterator[tuple[NDArray[np.float64], NDArray[np.int64]]]:
-    """Yield the triangles of each primitive of a mesh."""
-    mesh = document.item("meshes", index)
-    for number, primitive in enumerate(list_in(mesh, "primitives", f"meshes[{index}]")):
-        place = f"meshes[{index}].primitives[{number}]"
-        if not isinstance(primitive, dict):
-            raise NotAsExpectedError(place, "is no object")
-        mode = primitive.get("mode", _TRIANGLES)
-        if mode not in (_TRIANGLES, _STRIP, _FAN):
+    known: dict[Any, list[Primitive]] = {}
+    placed = set()
+    for node in nodes.shown():
+        if "mesh" not in node.item:
             continue
-        attributes = primitive.get("attributes")
-        if not isinstance(attributes, dict) or "POSITION" not in attributes:
-            raise NotAsExpectedError(place, "has no POSITION")
-        vertices = _positions(document, attributes["POSITION"])
-        if "indices" in primitive:
-            indices = document.accessor(primitive["indices"], 1).reshape(-1)
-            if indices.dtype.kind != "u":
-                raise NotAsExpectedError(place, "has indices of no unsigned type")
-        else:
-            indices = np.arange(len(vertices))
-        triangles = _triangles(indices.astype(np.int64), mode, place)
-        outside = np.flatnonzero((triangles >= len(vertices)).any(axis=1))
-        if len(outside):
-            worst = int(triangles[outside[0]].max())
+        weights = weights_of(document, node.item, f"nodes[{node.number}]")
+        mesh = node.item["mesh"]
+        placed.add(mesh)
+        key = (mesh, *weights.tolist())
+        if key not in known:
+            known[key] = primitives(document, mesh, weights)
+        yield from _placed(document, nodes, node, known[key])
+    if len(placed) < meshes:
+        left = meshes - len(placed)
+        document.source.note(f"{left} of {meshes} meshes stand in no node of the scene")
+
+
+def _placed(
+    document: Document, nodes: Nodes, node: ShownNode, parts: list[Primitive]
+) -> Iterator[MeshArrays]:
+    """Yield the primitives of a node's mesh, once for each instance of it."""
+    places = instances(document, node)
+    if "skin" not in node.item:
+        for matrix in places:
+            for part in parts:
+                turned = part.triangles[:, ::-1] if mirrors(matrix) else part.triangles
+                yield transformed(part.vertices, matrix), turned
+        return
+    if len(places) != 1 or places[0] is not node.matrix:
+        raise NotAsExpectedError(
+            f"nodes[{node.number}]", "has a skin and instances, which glTF does not define together"
+        )
+    matrices = joint_matrices(document, nodes, node.item["skin"])
+    for part in parts:
+        yield skinned(document, part, matrices), part.triangles
+
+
+def _joined(parts: Iterator[MeshArrays]) -> MeshArrays:
+    """Return all parts as one."""
+    room = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // _SHARE
+    vertices: list[NDArray[np.float64]] = [np.zeros((0, 3))]
+    triangles: list[NDArray[Any]] = [np.zeros((0, 3), dtype=np.int64)]
+    start = 0
+    for points, rows in parts:
+        vertices.append(points)
+        triangles.append(rows + start)
+        start += len(points)
+        room -= 2 * (points.nbytes + rows.nbytes)
+        if room < 0:
             raise NotAsExpectedError(
-                place, f"triangle {outside[0]} uses vertex {worst} of {len(vertices)}"
+                "nodes", "place more than a quarter of this machine's memory", "split the model"
             )
-        yield vertices, triangles
-
-
-def _positions(document: Document, index: object) -> NDArray[np.float64]:
-    """Return positions, those stored as normalised integers scaled back."""
-    values = document.accessor(index, 3)
-    vertices = values.astype(np.float64)
-    if document.item("accessors", index).get("normalized") and values.dtype.kind in "iu":
-        vertices = np.maximum(vertices / np.iinfo(values.dtype).max, -1.0)
-    return vertices
-
-
-def _triangles(indices: NDArray[np.int64], mode: int, place: str) -> NDArray[np.int64]:
-    """Return a list, strip or fan of triangles as rows of three."""
-    if mode == _TRIANGLES:
-        if len(indices) % 3:
-            raise NotAsExpectedError(place, f"has {len(indices)} indices, not three a triangle")
-        return indices.reshape(-1, 3)
-    count = max(0, len(indices) - 2)
-    step = np.arange(count)
-    if mode == _STRIP:
-        odd = step % 2
-        return np.stack([indices[step], indices[step + 1 + odd], indices[step + 2 - odd]], axis=1)
-    first = indices[np.zeros(count, dtype=np.int64)]
-    return np.stack([indices[step + 1], indices[step + 2], first], axis=1)
-
-
-def _local_matrix(node: Json, place: str) -> Matrix | None:
-    """Return a node's matrix (4, 4), None where it has none."""
-    if "matrix" in node:
-        identity = np.eye(4).reshape(-1).tolist()
-        return np.asarray(numbers_in(node, "matrix", place, identity).reshape(4, 4).T)
-    if not {"translation", "rotation", "scale"} & node.keys():
-        return None
-    matrix = np.eye(4)
-    x, y, z, w = numbers_in(node, "rotation", place, [0.0, 0.0, 0.0, 1.0]).tolist()
-    square = x * x + y * y + z * z + w * w
-    if square == 0.0:
-        raise NotAsExpectedError(f"{place}.rotation", "is zero, expected a unit quaternion")
-    s = 2.0 / square
-    matrix[:3, :3] = [
-        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
-        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
-        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
-    ]
-    matrix[:3, :3] *= numbers_in(node, "scale", place, [1.0, 1.0, 1.0])
-    matrix[:3, 3] = numbers_in(node, "translation", place, [0.0, 0.0, 0.0])
-    return matrix
-
-
-def _composed(outer: Matrix | None, inner: Matrix | None) -> Matrix | None:
-    """Return the matrix that applies `inner`, then `outer`; None stands for the identity."""
-    if outer is None or inner is None:
-        return inner if outer is None else outer
-    # Term by term: a matrix product of the platform's library may round otherwise elsewhere.
-    with np.errstate(over="ignore", invalid="ignore"):
-        terms = outer[:, :, np.newaxis] * inner[np.newaxis, :, :]
-        return np.asarray(((terms[:, 0] + terms[:, 1]) + terms[:, 2]) + terms[:, 3])
-
-
-def _transformed(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], matrix: Matrix | None
-) -> MeshArrays:
-    """Return a part placed by its matrix."""
-    if matrix is None:
-        return vertices, triangles
-    m = matrix[:3, :3]
-    with np.errstate(over="ignore", invalid="ignore"):
-        x, y, z = vertices.T
-        rows = [((m[k, 0] * x + m[k, 1] * y) + m[k, 2] * z) + matrix[k, 3] for k in range(3)]
-        mirrored = float(m[0] @ np.cross(m[1], m[2])) < 0
-    return np.stack(rows, axis=1), triangles[:, ::-1] if mirrored else triangles
+    return np.vstack(vertices), np.vstack(triangles)
