@@ -16,7 +16,7 @@ import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, Pose, Query, Status
 
 if TYPE_CHECKING:
-    from obbcli.motion.motion import PathMotion
+    from obbcli.motion.path import PathMotion
 
 # Above it a floor with its top at z = 0.
 FLOOR = Mesh(*box((-8.0, -9.0, -1.0), (8.0, 10.0, 0.0)))

@@ -15,7 +15,7 @@ from oracles_mesh import posed
 
 from obbcli import Body, Mesh, Motion, MotionError, Pose
 from obbcli.motion.body import as_body
-from obbcli.motion.motion import rotation_matrix
+from obbcli.motion.rotation import rotation_matrix
 
 TRIANGLE = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 COMPONENTS = st.floats(-20, 20) | st.floats(-1e-6, 1e-6) | st.sampled_from([0.0, 5e-324, 1e-160])

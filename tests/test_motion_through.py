@@ -13,7 +13,7 @@ from obbcli import Body, Mesh, Motion, MotionError, Pose
 from obbcli.motion.rotation import rotation_matrix, rotation_vector
 
 if TYPE_CHECKING:
-    from obbcli.motion.motion import PathMotion
+    from obbcli.motion.path import PathMotion
 
 TRIANGLE = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 TWO = [Pose(), Pose([0, 0, 1.0], [1, 2, 3])]

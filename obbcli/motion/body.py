@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from obbcli import kernels
-from obbcli.motion.motion import Motion, PathMotion, refuse
+from obbcli.motion.motion import Motion, refuse
 from obbcli.motion.pose import Pose
 
 if TYPE_CHECKING:
@@ -66,8 +66,7 @@ class Body:
             refuse("pose", pose, "pass a Pose")
         if not isinstance(motion, Motion):
             refuse("motion", motion, "pass a Motion")
-        if isinstance(motion, PathMotion):
-            pose = motion.first_pose(pose)
+        pose = motion.first_pose(pose)
         # The dataclass is frozen to everybody else, and its own way takes three times as long.
         fields = vars(self)
         fields["shape"] = shape
@@ -84,6 +83,44 @@ class Body:
     def at_rest(self) -> kernels.Placed | None:
         """The same of a body that does not move; None of others."""
         return self.placed if self.motion.is_at_rest else None
+
+
+def pivot_of(body: Body, surface: Surface) -> NDArray[np.float64]:
+    """Return where a body's axis passes at t = 0, world coordinates, (3,).
+
+    Args:
+        body: whose motion has constant velocities, or none that needs a pivot.
+        surface: what the body is made of; its centroid, posed, stands for a pivot not given.
+    """
+    if body.motion.pivot is not None:
+        return body.motion.pivot
+    pivot: NDArray[np.float64] = body.pose.apply(surface.surface_centroid[None])[0]
+    return pivot
+
+
+def missing_pivot(body: Body, surface: Surface) -> NDArray[np.float64] | None:
+    """Return the pivot that a body's motion needs and does not have, (3,); None where it has all.
+
+    The centroid of a surface costs a pass over all of it, which motions without need do not pay.
+    """
+    return pivot_of(body, surface) if body.motion.needs_pivot else None
+
+
+def with_pivot(body: Body, surface: Surface) -> Motion:
+    """Return a body's motion, about the same pivot whatever it is to move."""
+    motion, pivot = body.motion, missing_pivot(body, surface)
+    if pivot is None:
+        return motion
+    return Motion(motion.linear_velocity, motion.angular_velocity, pivot)
+
+
+def pose_at(body: Body, time: float, surface: Surface) -> Pose:
+    """Return where a body's mesh is at a time, as `Motion.pose_at`.
+
+    Raises:
+        MotionError: positions leave the range of double.
+    """
+    return body.motion.pose_at(time, body.pose, missing_pivot(body, surface))
 
 
 def as_body(shape: Body | Shape) -> Body:

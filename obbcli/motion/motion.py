@@ -1,12 +1,12 @@
-"""How a body moves: `Motion`, constant or through given poses.
+"""How a body moves: `Motion`, of constant velocities.
 
-World position of a vertex `p`: `x(0) = Q p + s`, then `x(t) = K + t V + R(t W) (x(0) - K)`; or
-through given poses, in pieces of that kind.
+World position of a vertex `p`: `x(0) = Q p + s`, then `x(t) = K + t V + R(t W) (x(0) - K)`. Other
+kinds of motion are made of pieces of that kind; what they have in common is what `Motion` says of
+its pieces.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,17 +16,17 @@ import numpy as np
 from obbcli.arrays import as_floats, as_vector
 from obbcli.errors import MotionError
 from obbcli.motion.pose import Pose, vector_or_zero
-from obbcli.motion.rotation import rotation_matrix, rotation_vector, turn_after
+from obbcli.motion.rotation import turn_after
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Motion", "PathMotion", "Pose", "rotation_matrix"]
+    from obbcli.motion.path import PathMotion
+    from obbcli.motion.pieces import Jump, Moment, Piece
 
-# Rad: nearer to half a turn, a matrix orthonormal to 1e-9 does not tell which way round is meant.
-_HALF_TURN_MARGIN = 1e-8
+_ORIGIN = np.zeros(3)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -114,7 +114,114 @@ class Motion:
             >>> path.times.tolist()
             [0.0, 2.0]
         """
+        from obbcli.motion.path import PathMotion
+
         return PathMotion(times, poses)
+
+    # ---- What every kind of motion says of its pieces
+
+    @property
+    def steady(self) -> Motion | None:
+        """The one motion of constant velocities that this is; None where velocities change."""
+        return self
+
+    @property
+    def goes_straight(self) -> bool:
+        """Whether every point of a body goes straight at a constant speed, or rests."""
+        return not self.is_turning
+
+    @property
+    def places_mesh(self) -> bool:
+        """Whether the motion says where the mesh is, so that a body takes no other pose."""
+        return False
+
+    @property
+    def needs_pivot(self) -> bool:
+        """Whether the body's centroid has to say which point the motion turns about."""
+        return self.is_turning and self.pivot is None
+
+    @property
+    def ends_at(self) -> float | None:
+        """When the motion has come to rest for good, s; None where it goes on."""
+        return None
+
+    @property
+    def top_velocity(self) -> NDArray[np.float64]:
+        """The fastest linear velocity, (3,) mesh units a second."""
+        return self.linear_velocity
+
+    def first_pose(self, pose: Pose) -> Pose:
+        """Return the pose at t = 0 of a body that has this motion and is said to be at `pose`.
+
+        Raises:
+            MotionError: the motion places the mesh itself, elsewhere.
+        """
+        return pose
+
+    def breaks(self, start: float, end: float) -> list[float]:  # noqa: ARG002
+        """Return the times after `start` and up to `end` at which velocities change, s, sorted."""
+        return []
+
+    def pieces(self, duration: float, pose: Pose) -> Iterator[Piece]:
+        """Yield the pieces of [0, duration], of which the last may be an instant.
+
+        Args:
+            duration: s.
+            pose: of the body at t = 0.
+        """
+        # Imported where it is needed: bodies at rest answer without it.
+        from obbcli.motion.pieces import Piece
+
+        yield Piece(0.0, duration, pose, self)
+
+    def moment(self, time: float, pose: Pose, pivot: NDArray[np.float64] | None) -> Moment:
+        """Return where a body is at the start of a leg, and how it moves from there on.
+
+        Args:
+            time: s.
+            pose: of the body at t = 0.
+            pivot: K where the motion needs one, (3,) world coordinates; None elsewhere.
+
+        Raises:
+            MotionError: positions leave the range of double.
+        """
+        from obbcli.motion.pieces import Moment
+
+        if self.is_at_rest or time == 0:
+            return Moment(pose, self)
+        velocity, spin = self.linear_velocity, self.angular_velocity
+        center: NDArray[np.float64] | None = _ORIGIN
+        if self.is_turning:
+            center = self.pivot if pivot is None else pivot
+        assert center is not None
+        there = self.pose_at(time, pose, center)
+        shift = time * velocity
+        summands = (pose.translation, there.translation, center, center, shift)
+        return Moment(there, Motion(velocity, spin, center + shift), summands)
+
+    def jump(self, time: float) -> Jump | None:  # noqa: ARG002
+        """Return how the piece that ends at a time misses the pose after it.
+
+        None where no piece ends then, or its end and the pose after it are the same by definition.
+        """
+        return None
+
+    def told(self, pose: Pose, centroid: NDArray[np.float64] | None) -> dict[str, object]:
+        """Return the motion as documents show it: names and plain numbers.
+
+        Args:
+            pose: of the body at t = 0.
+            centroid: of the body's surface, posed, (3,); None where the motion has a pivot of its
+                own or places the mesh.
+        """
+        pivot = centroid if self.pivot is None else self.pivot
+        assert pivot is not None
+        return {
+            "pose": pose.told(),
+            "linear_velocity": self.linear_velocity.tolist(),
+            "angular_velocity": self.angular_velocity.tolist(),
+            "pivot": pivot.tolist(),
+        }
 
     def pose_at(self, t: float, pose: Pose | None = None, pivot: ArrayLike | None = None) -> Pose:
         """Return where the motion takes a body by the time `t`, in closed form.
@@ -132,7 +239,7 @@ class Motion:
             MotionError: the time is not a finite number, the motion turns and neither it nor the
                 caller says about which pivot, or positions leave the range of double.
         """
-        time = _as_time(t, "t")
+        time = as_time(t, "t")
         start = _AS_LOADED if pose is None else pose
         if self.is_at_rest or time == 0:
             return start
@@ -152,118 +259,22 @@ class Motion:
             return Pose.carried(turn.matrix @ start.rotation, start.translation + shift)
 
 
-class PathMotion(Motion):
-    """How a body moves through given poses; made by `Motion.through`.
+def as_time(value: float, name: str) -> float:
+    """Return a finite number of seconds.
 
-    It has no one velocity, and no pivot: `piece` has those of each piece.
-
-    Attributes:
-        times: float64 (N,), read-only, s.
-        poses: N poses.
-        is_at_rest: whether all poses are the same.
+    Raises:
+        MotionError: it is none.
     """
-
-    times: NDArray[np.float64]
-    poses: tuple[Pose, ...]
-
-    def __init__(self, times: ArrayLike, poses: Sequence[Pose]) -> None:
-        clock = as_floats(times, (None,), "times", MotionError)
-        places = tuple(poses)
-        for k, pose in enumerate(places):
-            if not isinstance(pose, Pose):
-                refuse(f"poses[{k}]", pose, "pass Pose objects")
-        if len(places) != len(clock) or len(clock) < 2:
-            raise MotionError(
-                "times", f"{len(clock)} for {len(places)} poses", "give as many, at least two"
-            )
-        if clock[0] < 0:
-            raise MotionError("times[0]", f"is {clock[0]}", "start at 0 or later")
-        for k in np.flatnonzero(~(np.diff(clock) > 0))[:1].tolist():
-            raise MotionError(
-                f"times[{k + 1}]", f"is {clock[k + 1]} after {clock[k]}", "let times increase"
-            )
-        object.__setattr__(self, "times", clock)
-        object.__setattr__(self, "poses", places)
-        pieces = tuple(self._piece(k) for k in range(len(clock) - 1))
-        object.__setattr__(self, "_pieces", pieces)
-        object.__setattr__(self, "is_at_rest", all(piece is _AT_REST for piece in pieces))
-
-    _pieces: tuple[Motion, ...]
-
-    def piece(self, index: int) -> Motion:
-        """Return the motion from pose `index` to the next, on a clock that starts there.
-
-        Index -1 and N - 1 are the rest before and after.
-        """
-        return self._pieces[index] if 0 <= index < len(self._pieces) else _AT_REST
-
-    def index_at(self, t: float) -> int:
-        """Return the index of the piece that `t` is in: of two, the later."""
-        return bisect_right(self.times, t) - 1
-
-    def pose_at(self, t: float, pose: Pose | None = None, pivot: ArrayLike | None = None) -> Pose:
-        """Return where the motion has taken the mesh by the time `t`; exact at the given times.
-
-        Args:
-            t: s.
-            pose: none, or the first of the motion's own.
-            pivot: none.
-
-        Raises:
-            MotionError: the time is not a finite number, or a pose or pivot is given.
-        """
-        time = _as_time(t, "t")
-        self.first_pose(_AS_LOADED if pose is None else pose)
-        if pivot is not None:
-            raise MotionError("pivot", "is given to a motion through poses", "leave it out")
-        index = max(self.index_at(time), 0)
-        at = self.poses[index]
-        return self.piece(index).pose_at(max(time - float(self.times[index]), 0.0), at)
-
-    def first_pose(self, pose: Pose) -> Pose:
-        """Return the pose at t = 0 of a body that has this motion and is said to be at `pose`.
-
-        Raises:
-            MotionError: it is neither the identity nor the motion's first pose.
-        """
-        if pose.is_identity or is_same_pose(pose, self.poses[0]):
-            return self.poses[0]
-        raise MotionError(
-            "pose", "is given beside a motion through poses", "make it part of those poses"
-        )
-
-    def _piece(self, index: int) -> Motion:
-        here, there = self.poses[index : index + 2]
-        if is_same_pose(here, there):
-            return _AT_REST
-        turn = np.zeros(3)
-        if not np.array_equal(here.rotation, there.rotation):
-            turn = rotation_vector(there.rotation @ here.rotation.T)
-        name = f"piece {index} of the motion, from pose {index} to {index + 1}"
-        if float(np.linalg.norm(turn)) > np.pi - _HALF_TURN_MARGIN:
-            raise MotionError(name, "turns by half a turn", "give a pose in between")
-        time = self.times[index + 1] - self.times[index]
-        with np.errstate(over="ignore", invalid="ignore"):
-            velocity, spin = (there.translation - here.translation) / time, turn / time
-        if not (np.isfinite(velocity).all() and np.isfinite(spin).all()):
-            raise MotionError(name, f"is too fast: it takes {time} s", "let it take longer")
-        return Motion(velocity, spin, here.translation)
-
-
-def is_same_pose(a: Pose, b: Pose) -> bool:
-    """Return whether two poses are the same, number by number."""
-    return np.array_equal(a.rotation, b.rotation) and np.array_equal(a.translation, b.translation)
-
-
-def _as_time(value: float, name: str) -> float:
-    """Return a finite number of seconds."""
     return float(as_floats(value, (), name, MotionError))
 
 
 def refuse(name: str, value: object, remedy: str) -> None:
-    """Raise for an argument of another kind."""
+    """Raise for an argument of another kind.
+
+    Raises:
+        MotionError: always.
+    """
     raise MotionError(name, f"is of type {type(value).__name__}", remedy)
 
 
 _AS_LOADED = Pose()
-_AT_REST = Motion()

@@ -91,6 +91,10 @@ class Pose:
         """The pose as the kernels see it."""
         return kernels.Pose(self.rotation, self.translation)
 
+    def told(self) -> dict[str, object]:
+        """Return the pose as documents show it: names and plain numbers."""
+        return {"rotation": self.rotation.tolist(), "translation": self.translation.tolist()}
+
     def apply(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the posed points, float64 (N, 3), rounded as the queries round them.
 

@@ -11,18 +11,15 @@ from obbcli import kernels
 from obbcli.answers.counts import QueryStats
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.mesh import Mesh
-from obbcli.motion.motion import PathMotion
+from obbcli.motion.body import pivot_of
 from obbcli.tree.tree import ObbTree, load_tree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
-    from obbcli.motion.body import Body, Shape, Surface
+    from obbcli.motion.body import Body, Shape
 
 _NO_DEPTH_LIMIT = 2**32 - 1
 # Of the duration: the width asked of a bracket where the caller asks for none.
@@ -76,8 +73,8 @@ def duration_of(duration: float | None, bodies: Sequence[Body]) -> float:
         motions = [body.motion for body in bodies if not body.motion.is_at_rest]
         if not motions:
             return 0.0
-        paths = [float(m.times[-1]) for m in motions if isinstance(m, PathMotion)]
-        return max(paths, default=1.0)
+        ends = (motion.ends_at for motion in motions)
+        return max((end for end in ends if end is not None), default=1.0)
     try:
         seconds = float(duration)
     except (TypeError, ValueError) as fault:
@@ -99,14 +96,6 @@ def box_limits(accuracy: Accuracy) -> tuple[bool, int, int]:
         _NO_DEPTH_LIMIT if a is None else min(a, _NO_DEPTH_LIMIT),
         _NO_DEPTH_LIMIT if b is None else min(b, _NO_DEPTH_LIMIT),
     )
-
-
-def pivot_of(body: Body, tree: Surface) -> NDArray[np.float64]:
-    """Return where a body's axis passes at t = 0, world coordinates, (3,)."""
-    if body.motion.pivot is not None:
-        return body.motion.pivot
-    pivot: NDArray[np.float64] = body.pose.apply(tree.surface_centroid[None])[0]
-    return pivot
 
 
 def limits_of(accuracy: Accuracy) -> kernels.Limits:

@@ -18,12 +18,10 @@ from obbcli.answers.contact import Contact
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError, UnresolvedError
 from obbcli.mesh import Mesh
-from obbcli.motion.body import Body, as_body
-from obbcli.motion.motion import Motion, PathMotion
+from obbcli.motion.body import Body, as_body, with_pivot
 from obbcli.questions.border import (
     duration_of,
     moving_query,
-    pivot_of,
     time_tolerance,
     trees_of,
     whole_limit,
@@ -101,8 +99,8 @@ def search_contacts(
         )
     end = duration_of(duration, bodies)
     trees = trees_of(bodies)
-    follows = any(isinstance(body.motion, PathMotion) for body in bodies)
-    found = (_of_path if follows else _of_motion)(bodies, trees, end, accuracy, search)
+    is_steady = all(body.motion.steady is not None for body in bodies)
+    found = (_of_motion if is_steady else _of_path)(bodies, trees, end, accuracy, search)
     return takewhile(lambda contact: _low(contact) <= search.end, found)
 
 
@@ -218,8 +216,4 @@ def _alone(
 def _triangle(body: Body, tree: ObbTree, row: int) -> Body:
     """Return a body of one triangle of another, with the same motion."""
     mesh = Mesh(tree.triangle(row), [[0, 1, 2]])
-    motion = body.motion
-    if not isinstance(motion, PathMotion) and motion.is_turning:
-        pivot = pivot_of(body, tree)
-        motion = Motion(motion.linear_velocity, motion.angular_velocity, pivot)
-    return Body(ObbTree.build(mesh), pose=body.pose, motion=motion)
+    return Body(ObbTree.build(mesh), pose=body.pose, motion=with_pivot(body, tree))

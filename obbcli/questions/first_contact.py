@@ -16,7 +16,6 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.contact import Contact, FirstContact
 from obbcli.answers.status import Status
 from obbcli.motion.body import as_body
-from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import (
     POPS_A_SLICE,
     damaged,
@@ -97,7 +96,7 @@ class Query:
     ) -> None:
         self._accuracy = _EXACT if accuracy is None else accuracy
         self._bodies = as_body(a), as_body(b)
-        self._follows_path = any(isinstance(body.motion, PathMotion) for body in self._bodies)
+        self._follows_path = any(body.motion.steady is None for body in self._bodies)
         self._duration = duration_of(duration, self._bodies)
         start = time.perf_counter()
         self._trees = trees_of(self._bodies)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body
-    from obbcli.motion.pose import Pose
 
 Record: TypeAlias = dict[str, Any]
 
@@ -103,26 +102,13 @@ def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
 
 def body_part(body: Body) -> Record:
     """Return pose and motion as understood; the shape is a tree or a mesh."""
-    from obbcli.motion.motion import PathMotion
+    from obbcli.motion.body import pivot_of
 
     pose, motion = body.pose, body.motion
-    if isinstance(motion, PathMotion):
-        poses = [_pose_part(through) for through in motion.poses]
-        return {"pose": poses[0], "times": motion.times.tolist(), "poses": poses}
-    pivot = motion.pivot
-    if pivot is None:
-        assert not isinstance(body.shape, (str, PathLike))
-        pivot = pose.apply(body.shape.surface_centroid[None])[0]
-    return {
-        "pose": _pose_part(pose),
-        "linear_velocity": motion.linear_velocity.tolist(),
-        "angular_velocity": motion.angular_velocity.tolist(),
-        "pivot": pivot.tolist(),
-    }
-
-
-def _pose_part(pose: Pose) -> Record:
-    return {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()}
+    if motion.places_mesh:
+        return motion.told(pose, None)
+    assert not isinstance(body.shape, (str, PathLike))
+    return motion.told(pose, pivot_of(body, body.shape))
 
 
 def stats_part(stats: QueryStats) -> Record:

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.motion.body import Body
-from obbcli.motion.motion import Motion, PathMotion
-from obbcli.questions.border import pivot_of
+from obbcli.motion.body import Body, with_pivot
 from obbcli.scene.results import BodyStats
 from obbcli.tree.head import TreeHead
 from obbcli.tree.tree import ObbTree, begins_as_tree
@@ -68,13 +66,8 @@ class Shapes:
                 tree = shape.open() if isinstance(shape, TreeHead) else ObbTree.build(shape)
                 self._trees[key] = tree
             shape = tree
-        motion = body.motion
-        is_path = isinstance(motion, PathMotion)
-        if not is_path and motion.is_turning and motion.pivot is None:
-            # Posed once, and not for each question about the body.
-            velocity, spin = motion.linear_velocity, motion.angular_velocity
-            motion = Motion(velocity, spin, pivot_of(body, shape))
-        return Body(shape, body.pose, motion)
+        # The pivot is posed once, and not for each question about the body.
+        return Body(shape, body.pose, with_pivot(body, shape))
 
     def stats(self, body: SceneBody) -> BodyStats:
         """Return what of a body was used so far."""

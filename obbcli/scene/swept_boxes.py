@@ -16,16 +16,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli.motion.motion import Motion, PathMotion
-
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
     from obbcli.motion.body import Body, Surface
-    from obbcli.motion.pose import Pose
+    from obbcli.motion.pieces import Piece
 
     Array = NDArray[np.float64]
 
@@ -52,20 +50,15 @@ class SweptBoxes(NamedTuple):
     boxes: Array
 
 
-class _Piece(NamedTuple):
-    """A time in which a body has constant velocities, and where it is at the start of it."""
+class _BodyPiece(NamedTuple):
+    """A piece of a body's motion, with the bounds of the body."""
 
     body: int
-    start: float
-    end: float
     bounds: Array
-    pose: Pose
-    motion: Motion
+    piece: Piece
     # World coordinates; None: the pose of the centroid, which is of the mesh.
     pivot: Array | None
     centroid: Array
-    # The pose that the next piece starts with, and after how long; None where none follows.
-    after: tuple[Pose, float] | None = None
 
 
 def swept_boxes(
@@ -81,30 +74,25 @@ def swept_boxes(
             other rotations than the true ones.
     """
     is_sampled = accuracy.method == "sampled"
-    pieces: list[_Piece] = []
+    pieces: list[_BodyPiece] = []
     balls: list[tuple[int, Array]] = []
     limits = (accuracy.max_depth_a, accuracy.max_depth_b)
     is_coarse = accuracy.leaves == "boxes" or limits != (None, None)
     with np.errstate(all="ignore"):  # what is not finite is known to be nowhere in particular
         for number, (body, shape) in enumerate(zip(bodies, shapes, strict=True)):
             bounds = _grown(shape.bounds) if is_coarse else shape.bounds
-            motion = body.motion
-            if isinstance(motion, PathMotion) and not motion.is_at_rest:
-                if is_sampled:
-                    balls.append((number, _ball_of_path(bounds, motion)))
-                else:
-                    pieces += _pieces_of_path(number, bounds, motion, duration)
-            else:
-                if isinstance(motion, PathMotion):
-                    motion = Motion()
-                pivot = motion.pivot if motion.is_turning else _NOWHERE
+            motion = body.motion.steady or body.motion
+            found = list(motion.pieces(duration, body.pose))
+            if is_sampled and motion.steady is None:
+                balls.append((number, _ball_of_pieces(bounds, found)))
+                continue
+            for piece in found:
+                pivot = piece.motion.pivot if piece.motion.is_turning else _NOWHERE
                 centroid = shape.surface_centroid if pivot is None else _NOWHERE
-                pieces.append(
-                    _Piece(number, 0.0, duration, bounds, body.pose, motion, pivot, centroid)
-                )
+                pieces.append(_BodyPiece(number, bounds, piece, pivot, centroid))
         boxes = _boxes(pieces, is_sampled=is_sampled)
-    times = [(piece.start, piece.end) for piece in pieces] + [(0.0, duration)] * len(balls)
-    numbers = [piece.body for piece in pieces] + [number for number, _ in balls]
+    times = [(one.piece.start, one.piece.end) for one in pieces] + [(0.0, duration)] * len(balls)
+    numbers = [one.body for one in pieces] + [number for number, _ in balls]
     rows = np.concatenate([boxes, *(ball[None] for _, ball in balls)])
     return SweptBoxes(np.array(numbers, np.uint32), np.array(times), rows)
 
@@ -116,31 +104,14 @@ def _grown(bounds: Array) -> Array:
     return np.array([low - reach, high + reach])
 
 
-def _pieces_of_path(
-    number: int, bounds: Array, motion: PathMotion, duration: float
-) -> Iterator[_Piece]:
-    """Yield the pieces of [0, duration], with the rest before and after."""
-    times, poses = motion.times.tolist(), motion.poses
-    last = len(times) - 1
-    if times[0] > 0:
-        end = min(times[0], duration)
-        yield _Piece(number, 0.0, end, bounds, poses[0], Motion(), _NOWHERE, _NOWHERE)
-    for k, start in enumerate(times):
-        if start > duration:
-            return
-        end = duration if k == last else min(times[k + 1], duration)
-        after = None if k == last else (poses[k + 1], times[k + 1] - start)
-        piece = motion.piece(k)
-        pivot = poses[k].translation
-        yield _Piece(number, start, end, bounds, poses[k], piece, pivot, _NOWHERE, after)
-
-
-def _ball_of_path(bounds: Array, motion: PathMotion) -> Array:
-    """Return a box at rest around all that sampling makes of a path.
+def _ball_of_pieces(bounds: Array, pieces: Sequence[Piece]) -> Array:
+    """Return a box at rest around all that sampling makes of a motion in pieces.
 
     Its centers are on chords between the poses' translations, its frames any rotations.
     """
-    places = np.array([pose.translation for pose in motion.poses])
+    poses = [piece.pose for piece in pieces]
+    poses += [piece.after[0] for piece in pieces if piece.after is not None]
+    places = np.array([pose.translation for pose in poses])
     radius = _STRETCH * float(_lengths(_corners(bounds[None]))[0].max())
     reach = radius + MARGIN * (radius + float(np.abs(places).sum(axis=1).max()))
     return np.concatenate([places.min(axis=0) - reach, places.max(axis=0) + reach, np.zeros(3)])
@@ -158,26 +129,26 @@ class _Placed:
     time: Array
 
 
-def _placed(pieces: Sequence[_Piece]) -> _Placed:
-    corners = _corners(np.array([piece.bounds for piece in pieces]))
-    rotations = np.array([piece.pose.rotation for piece in pieces])
-    shifts = np.array([piece.pose.translation for piece in pieces])
+def _placed(pieces: Sequence[_BodyPiece]) -> _Placed:
+    corners = _corners(np.array([one.bounds for one in pieces]))
+    rotations = np.array([one.piece.pose.rotation for one in pieces])
+    shifts = np.array([one.piece.pose.translation for one in pieces])
     placed = corners @ rotations.transpose(0, 2, 1) + shifts[:, None]
-    velocity = np.array([piece.motion.linear_velocity for piece in pieces])
-    centroids = np.array([piece.centroid for piece in pieces])
+    velocity = np.array([one.piece.motion.linear_velocity for one in pieces])
+    centroids = np.array([one.centroid for one in pieces])
     pivot = (rotations @ centroids[:, :, None])[:, :, 0] + shifts
-    rows = [row for row, piece in enumerate(pieces) if piece.pivot is not None]
+    rows = [row for row, one in enumerate(pieces) if one.pivot is not None]
     if rows:
         pivot[rows] = [pieces[row].pivot for row in rows]
-    time = np.array([piece.end - piece.start for piece in pieces])
+    time = np.array([one.piece.end - one.piece.start for one in pieces])
     sizes = 2 * np.abs(corners).sum(axis=2).max(axis=1)
     for vectors in (shifts, 2 * pivot, time[:, None] * velocity):
         sizes = sizes + np.abs(vectors).sum(axis=1)
-    spin = np.array([piece.motion.angular_velocity for piece in pieces])
+    spin = np.array([one.piece.motion.angular_velocity for one in pieces])
     return _Placed(placed, sizes, velocity, spin, pivot, time)
 
 
-def _boxes(pieces: Sequence[_Piece], *, is_sampled: bool) -> Array:
+def _boxes(pieces: Sequence[_BodyPiece], *, is_sampled: bool) -> Array:
     """Return the rows of pieces, (N, 9)."""
     if not pieces:
         return np.empty((0, 9))
@@ -220,25 +191,25 @@ def _ball(placed: _Placed) -> tuple[Array, Array]:
     return placed.pivot - radius, placed.pivot + radius
 
 
-def _jumps(pieces: Sequence[_Piece]) -> Array:
+def _jumps(pieces: Sequence[_BodyPiece]) -> Array:
     """Bound how far from the next pose any vertex is at the end of its piece, (N,).
 
     As `through_poses.jump_at` has it, which the questions count against what they prove.
     """
     jumps = np.zeros(len(pieces))
-    rows = [row for row, piece in enumerate(pieces) if piece.after is not None]
+    rows = [row for row, one in enumerate(pieces) if one.piece.after is not None]
     if not rows:
         return jumps
     spins, defects, shifts, bounds = [], [], [], []
     for row in rows:
-        piece = pieces[row]
+        piece = pieces[row].piece
         assert piece.after is not None
         pose, time = piece.after
         spins.append(time * piece.motion.angular_velocity)
         defects.append((piece.pose.rotation, pose.rotation))
         end = piece.pose.translation + time * piece.motion.linear_velocity
         shifts.append(end - pose.translation)
-        bounds.append(piece.bounds)
+        bounds.append(pieces[row].bounds)
     here, there = np.array(defects).transpose(1, 0, 2, 3)
     off = _rotations(np.array(spins)) @ here - there
     low, high = np.array(bounds).transpose(1, 0, 2)

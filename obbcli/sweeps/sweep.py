@@ -9,9 +9,9 @@ import numpy as np
 from obbcli.accuracy import Accuracy
 from obbcli.arrays import as_floats
 from obbcli.errors import MotionError
-from obbcli.motion.body import Body, as_body
-from obbcli.motion.motion import Motion, PathMotion
-from obbcli.questions.border import duration_of, pivot_of, trees_of
+from obbcli.motion.body import Body, as_body, pivot_of
+from obbcli.motion.motion import Motion
+from obbcli.questions.border import duration_of, trees_of
 from obbcli.sweeps.answer_rows import RAW, as_rows
 from obbcli.sweeps.batch import Batch, Outcome, answer_batch, answer_one_by_one
 from obbcli.threads import thread_count
@@ -98,7 +98,7 @@ class _Column(NamedTuple):
     """The motions of one body: in numbers, or as objects where some go through poses."""
 
     numbers: Floats  # (N, 9), or (N, 6) where all turn about the centroid; NaN: the centroid
-    paths: dict[int, PathMotion]
+    paths: dict[int, Motion]  # those that place the mesh themselves
 
     def motion(self, row: int) -> Motion:
         row = 0 if len(self.numbers) == 1 else row
@@ -182,7 +182,7 @@ def _of_motions(motions: Sequence[object], name: str) -> _Column:
         if not isinstance(motion, Motion):
             kind = type(motion).__name__
             raise MotionError(f"{name}[{row}]", f"is of type {kind}", "pass Motion objects")
-        if isinstance(motion, PathMotion):
+        if motion.places_mesh:
             paths[row] = motion
             numbers[row] = 0.0
             continue

@@ -8,8 +8,8 @@ import numpy as np
 
 from obbcli.answers.status import Status
 from obbcli.mesh.measure import diagonal
-from obbcli.motion.motion import PathMotion
-from obbcli.questions.border import duration_of, pivot_of
+from obbcli.motion.body import pose_at
+from obbcli.questions.border import duration_of
 from obbcli.view.marks import normal_mark, point_mark
 from obbcli.view.picture import VIEWS, Lines, Picture, Surface, bounds_of
 
@@ -102,7 +102,7 @@ def _body_parts(
     """Return a body in full, with the triangle that touches apart, and its ghosts."""
     tree: ObbTree = body.shape  # type: ignore[assignment]
     mesh, color = tree.mesh, _COLORS[name]
-    now = pose_at(body, moment.time)
+    now = pose_at(body, moment.time, tree)
     rows = np.arange(len(mesh.triangles))
     rest = mesh.triangles if touched is None else mesh.triangles[rows != touched]
     parts: list[Surface | Lines] = []
@@ -120,7 +120,7 @@ def _body_parts(
                 vertices=mesh.vertices,
                 triangles=mesh.triangles,
                 color=color,
-                pose=pose_at(body, time),
+                pose=pose_at(body, time, tree),
                 opacity=_GHOST_OPACITY if time else _START_OPACITY,
             )
         )
@@ -143,14 +143,6 @@ def _triangle_parts(name: str, corners: NDArray[np.float64], pose: Pose) -> list
             is_mark=True,
         ),
     ]
-
-
-def pose_at(body: Body, time: float) -> Pose:
-    """Return where a body's mesh is at a time; its shape is a tree."""
-    # A motion through poses turns about none.
-    turns = not isinstance(body.motion, PathMotion)
-    pivot = pivot_of(body, body.shape) if turns else None  # type: ignore[arg-type]
-    return body.motion.pose_at(time, body.pose, pivot)
 
 
 def _clearest_view(

@@ -10,7 +10,7 @@ import pytest
 from cube_files import cube, stl
 
 from obbcli import Accuracy, MeshError, Scene, SceneError
-from obbcli.motion.motion import PathMotion
+from obbcli.motion.path import PathMotion
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ import pytest
 from random_scenes import CUBE, MESHES, random_motion
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
-from obbcli.motion.motion import PathMotion
+from obbcli.motion.path import PathMotion
 from obbcli.questions.border import trees_of
 from obbcli.questions.legs.steps import steps_of
 from obbcli.scene.swept_boxes import SweptBoxes, swept_boxes

@@ -36,7 +36,8 @@ class PoseOptions(NamedTuple):
         return self._pose(self.rotate, self.translate), self._pose(self.rotate_b, self.translate_b)
 
     def _pose(self, rotate: Numbers | None, translate: Numbers | None) -> Pose:
-        from obbcli.motion.motion import Pose, rotation_matrix
+        from obbcli.motion.pose import Pose
+        from obbcli.motion.rotation import rotation_matrix
 
         with usage_errors():
             turn = None if rotate is None else rotation_matrix(rotate, degrees=self.degrees)

@@ -18,17 +18,17 @@ from __future__ import annotations
 
 import itertools
 import math
+from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from obbcli.errors import MotionError
-from obbcli.motion.body import Body
+from obbcli.motion.body import Body, pivot_of
 from obbcli.motion.integrators import euler_step, rk4_step
-from obbcli.motion.motion import Motion, PathMotion
+from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
 from obbcli.motion.rotation import axis_of, turn_after
-from obbcli.questions.border import pivot_of
 from obbcli.questions.legs.relay import Leg, length_of
 from obbcli.questions.legs.through_poses import ROUNDING, jump_at, norm, rounding_of
 
@@ -64,11 +64,12 @@ def steps_of(
         MotionError: positions leave the range of double, or a step turns by so much that an
             integrator makes no frame of it.
     """
-    if not any(_turns(body.motion) for body in bodies):
+    if all(body.motion.goes_straight for body in bodies):
         yield Leg(0.0, duration, bodies, 0.0)
         return
     step_a, step_b = (
-        _step_of(body, tree, accuracy.integrator) for body, tree in zip(bodies, trees, strict=True)
+        _step_of(body, tree, duration, accuracy.integrator)
+        for body, tree in zip(bodies, trees, strict=True)
     )
     count = accuracy.steps
     for k in range(count):
@@ -89,18 +90,11 @@ def _beyond_doubles() -> MotionError:
     )
 
 
-def _turns(motion: Motion) -> bool:
-    """Return whether a motion has to be sampled at all."""
-    if isinstance(motion, PathMotion):
-        return not motion.is_at_rest
-    return motion.is_turning
-
-
-def _step_of(body: Body, tree: ObbTree, integrator: str) -> Step:
+def _step_of(body: Body, tree: ObbTree, duration: float, integrator: str) -> Step:
     motion = body.motion
-    if isinstance(motion, PathMotion) and not motion.is_at_rest:
-        return _Frozen(_Poses(body, motion, tree), tree, integrator)
-    if _turns(motion):
+    if motion.steady is None:
+        return _Frozen(_Pieces(body, tree, duration), tree, integrator)
+    if motion.is_turning:
         return _Frozen(_Screw(body, tree), tree, integrator)
 
     def step(start: float, end: float) -> tuple[Body, float]:
@@ -214,14 +208,19 @@ class _Screw:
         return self._rounding + ROUNDING * norm(chord.end * self._velocity)
 
 
-class _Poses:
-    """The path through poses: y in the coordinates of the mesh."""
+class _Pieces:
+    """The path in pieces: y in the coordinates of the mesh."""
 
-    def __init__(self, body: Body, motion: PathMotion, tree: ObbTree) -> None:
-        self._body, self._motion, self._tree = body, motion, tree
-        self.first = motion.poses[0].rotation
+    def __init__(self, body: Body, tree: ObbTree, duration: float) -> None:
+        self._body, self._motion, self._tree = body, body.motion, tree
+        pieces = list(body.motion.pieces(duration, body.pose))
+        self._starts = [piece.start for piece in pieces]
+        self._pieces = pieces
+        self.first = pieces[0].pose.rotation
         self.corners = _corners(tree)
-        furthest = max((pose.translation for pose in motion.poses), key=norm)
+        afters = [piece.after[0] for piece in pieces if piece.after is not None]
+        poses = [*(piece.pose for piece in pieces), *afters]
+        furthest = max((pose.translation for pose in poses), key=norm)
         self._rounding = rounding_of(tree, furthest, furthest, furthest)
 
     def place(self, time: float, /) -> tuple[Array, Array]:
@@ -234,10 +233,10 @@ class _Poses:
     def turns(self, start: float, end: float, /) -> list[tuple[float, Array, float]]:
         found = []
         for here, there in itertools.pairwise((start, *self._times(start, end), end)):
-            index = self._motion.index_at(here)
-            spin = self._motion.piece(index).angular_velocity
+            piece = self._pieces[bisect_right(self._starts, here) - 1]
+            spin = piece.motion.angular_velocity
             if spin.any():
-                arms = self.corners @ self._motion.poses[index].rotation.T
+                arms = self.corners @ piece.pose.rotation.T
                 found.append((there - here, spin, _radius(arms, spin)))
         return found
 
@@ -252,11 +251,8 @@ class _Poses:
         return off + jumps + self._rounding
 
     def _times(self, start: float, end: float) -> list[float]:
-        """Return the times of poses in between."""
-        first = np.searchsorted(self._motion.times, start, "right")
-        last = np.searchsorted(self._motion.times, end, "left")
-        times: list[float] = self._motion.times[first:last].tolist()
-        return times
+        """Return the times in between at which pieces start."""
+        return [time for time in self._motion.breaks(start, end) if time < end]
 
 
 def _corners(tree: ObbTree) -> Array:

@@ -15,9 +15,7 @@ import numpy as np
 
 from obbcli.answers.contact import FirstContact
 from obbcli.answers.status import Status
-from obbcli.motion.body import Body
-from obbcli.motion.motion import Motion, PathMotion, is_same_pose
-from obbcli.questions.border import pivot_of
+from obbcli.motion.body import Body, missing_pivot
 from obbcli.questions.legs.relay import Leg, Relay, length_of
 
 if TYPE_CHECKING:
@@ -44,8 +42,7 @@ def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterato
     """
     breaks = {0.0}
     for body in bodies:
-        if isinstance(body.motion, PathMotion):
-            breaks.update(t for t in body.motion.times.tolist() if t <= duration)
+        breaks.update(body.motion.breaks(0.0, duration))
     starts = sorted(breaks)
     pairs = tuple(zip(bodies, trees, strict=True))
     for start, end in zip(starts, [*starts[1:], duration], strict=True):
@@ -56,25 +53,9 @@ def legs_of(bodies: tuple[Body, Body], trees: Trees, duration: float) -> Iterato
 
 def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
     """Return the body with pose and velocities at a time, and by how much that is off its path."""
-    motion = body.motion
-    if isinstance(motion, PathMotion):
-        index = motion.index_at(time)
-        first = max(index, 0)
-        piece = motion.piece(index)
-        if piece.is_at_rest or time == motion.times[first]:
-            return Body(tree, motion.poses[first], piece), 0.0
-        pose = motion.pose_at(time)
-        error = rounding_of(tree, motion.poses[first].translation, pose.translation)
-        now = Motion(piece.linear_velocity, piece.angular_velocity, pose.translation)
-        return Body(tree, pose, now), error
-    if motion.is_at_rest or time == 0:
-        return Body(tree, body.pose, motion), 0.0
-    velocity, spin = motion.linear_velocity, motion.angular_velocity
-    pivot = pivot_of(body, tree) if spin.any() else np.zeros(3)
-    pose = motion.pose_at(time, body.pose, pivot)
-    shift = time * velocity
-    error = rounding_of(tree, body.pose.translation, pose.translation, pivot, pivot, shift)
-    return Body(tree, pose, Motion(velocity, spin, pivot + shift)), error
+    moment = body.motion.moment(time, body.pose, missing_pivot(body, tree))
+    error = rounding_of(tree, *moment.summands) if moment.summands else 0.0
+    return Body(tree, moment.pose, moment.motion), error
 
 
 def rounding_of(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
@@ -84,18 +65,10 @@ def rounding_of(tree: ObbTree, *vectors: NDArray[np.float64]) -> float:
 
 def jump_at(body: Body, tree: ObbTree, time: float) -> float:
     """Bound how far any vertex is from the next pose where a piece ends at this time."""
-    motion = body.motion
-    if not isinstance(motion, PathMotion):
+    jump = body.motion.jump(time)
+    if jump is None:
         return 0.0
-    index = motion.index_at(time)
-    if index < 1 or motion.times[index] != time:
-        return 0.0
-    here, there = motion.poses[index - 1 : index + 1]
-    # No velocity tells of poses that differ by what no motion makes of each other.
-    if is_same_pose(here, there):
-        return 0.0
-    end = motion.piece(index - 1).pose_at(time - float(motion.times[index - 1]), here)
-    return _apart(tree, end, there) + rounding_of(tree, here.translation, there.translation)
+    return _apart(tree, jump.end, jump.after) + rounding_of(tree, *jump.summands)
 
 
 def _apart(tree: ObbTree, a: Pose, b: Pose) -> float:

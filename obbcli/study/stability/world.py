@@ -11,9 +11,9 @@ import numpy as np
 
 from obbcli.errors import MotionError
 from obbcli.mesh import Mesh
-from obbcli.motion.body import Body, as_body
-from obbcli.motion.motion import Motion, PathMotion
-from obbcli.questions.border import duration_of, pivot_of, trees_of
+from obbcli.motion.body import Body, as_body, pivot_of
+from obbcli.motion.motion import Motion
+from obbcli.questions.border import duration_of, trees_of
 from obbcli.tree.tree import ObbTree
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def pair_of(a: Body | Shape, b: Body | Shape, duration: float | None, accuracy: 
         raise MotionError("method", "is sampled, which proves nothing", "ask for certified answers")
     bodies = as_body(a), as_body(b)
     for name, body in zip("ab", bodies, strict=True):
-        if isinstance(body.motion, PathMotion):
+        if body.motion.places_mesh:
             fault = "moves through poses, which extremes are not defined for"
             raise MotionError(f"motion of {name}", fault, "give a velocity")
     trees = trees_of(bodies)

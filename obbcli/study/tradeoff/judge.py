@@ -12,16 +12,11 @@ import numpy as np
 
 from obbcli.accuracy import Accuracy
 from obbcli.answers.status import Status
-from obbcli.motion.body import Body
-from obbcli.motion.motion import PathMotion
-from obbcli.questions.border import pivot_of
+from obbcli.motion.body import Body, pose_at
 from obbcli.questions.distance import distance
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from obbcli.answers.contact import FirstContact
-    from obbcli.motion.pose import Pose
     from obbcli.tree.tree import ObbTree
 
 # Of the largest coordinates met: what poses at a time, rounded, may be off.
@@ -137,7 +132,7 @@ class Judge:
     def _gap_at(self, time: float) -> tuple[float, float] | None:
         """Return proven bounds on the distance of the surfaces at a time; None: took too long."""
         if time not in self._gaps:
-            a, b = (Body(body.shape, pose_at(body, time)) for body in self._bodies)
+            a, b = (Body(body.shape, pose_at(body, time, _tree(body))) for body in self._bodies)
             bounds = distance(a, b, Accuracy(timeout=_PATIENCE)).bounds
             is_known = bounds[1] - bounds[0] <= 1e-6 * bounds[1]
             self._gaps[time] = bounds if is_known else None
@@ -145,9 +140,9 @@ class Judge:
 
     def _rounding(self, time: float) -> float:
         """Return what the distance at a time may be off since poses and times are rounded."""
-        reach = [time * float(np.linalg.norm(_velocity(body))) for body in self._bodies]
+        reach = [time * float(np.linalg.norm(body.motion.top_velocity)) for body in self._bodies]
         for body in self._bodies:
-            pose = pose_at(body, time)
+            pose = pose_at(body, time, _tree(body))
             reach += [
                 float(np.abs(pose.translation).max()),
                 float(np.abs(_tree(body).bounds).max()),
@@ -155,26 +150,9 @@ class Judge:
         return _ROUNDING * max(reach)
 
 
-def pose_at(body: Body, time: float) -> Pose:
-    """Return where a body over a tree is at a time."""
-    motion = body.motion
-    if isinstance(motion, PathMotion):
-        return motion.pose_at(time)
-    return motion.pose_at(time, body.pose, pivot_of(body, _tree(body)))
-
-
 def _tree(body: Body) -> ObbTree:
     tree: ObbTree = body.shape  # type: ignore[assignment]  # bodies of a study are over trees
     return tree
-
-
-def _velocity(body: Body) -> NDArray[np.float64]:
-    """Return a linear velocity, or the fastest one through poses; turning moves no further."""
-    motion = body.motion
-    if isinstance(motion, PathMotion):
-        pieces = [motion.piece(k).linear_velocity for k in range(len(motion.poses) - 1)]
-        return max(pieces, key=lambda velocity: float(np.linalg.norm(velocity)))
-    return motion.linear_velocity
 
 
 def _touches(answer: FirstContact) -> bool:

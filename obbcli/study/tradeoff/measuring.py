@@ -10,7 +10,6 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError
 from obbcli.motion.body import as_body
-from obbcli.motion.motion import PathMotion
 from obbcli.questions.border import duration_of
 from obbcli.questions.first_contact import Query, first_contact
 from obbcli.study.tradeoff.judge import Judge
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
 
     from obbcli.answers.contact import FirstContact
     from obbcli.motion.body import Body, Shape
-    from obbcli.motion.motion import Motion
 
     # Takes about how many seconds are left, and how many settings are measured.
     Progress = Callable[[float, int], object]
@@ -154,7 +152,7 @@ class Study:
         trees = self._trees
         motions = [body.motion for body in trees.bodies]
         still = all(motion.is_at_rest for motion in motions)
-        turns = any(_turns(motion) for motion in motions)
+        turns = not all(motion.goes_straight for motion in motions)
         duration = 0.0 if still else self._duration
         scale = Scale(duration, trees.size, turns, levels_of(trees.triangle_count))
         return plan(self._asked, scale, varies_trees=trees.can_vary)
@@ -285,10 +283,6 @@ def _seconds(budget: float) -> float:
         return duration_of(budget, ())
     except MotionError as fault:
         raise MotionError("budget", fault.fault, fault.remedy) from fault
-
-
-def _turns(motion: Motion) -> bool:
-    return motion.is_turning or (isinstance(motion, PathMotion) and not motion.is_at_rest)
 
 
 def _was_cut(answer: FirstContact, accuracy: Accuracy, seconds: float) -> bool:
