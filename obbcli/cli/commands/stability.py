@@ -44,7 +44,7 @@ Examples:
     "--plot",
     type=PathName(),
     metavar="FILE",
-    help="Draw what held into FILE, .svg or .png; needs obbtree[plot].",
+    help="Draw what held into FILE, .svg or .png; needs matplotlib.",
 )
 @about_two("Exit with 1 where they touch, 0 where proven apart; 6 where anything is broken.")
 def command(asked: Asked, plot: str | None) -> int:
@@ -96,7 +96,7 @@ def _check_plot(name: str, asked: Asked) -> None:
     if output is not None and Path(name).resolve() == output.resolve():
         raise UsageError(f"--plot {name}", "is where the answer goes", "name another file")
     if find_spec("matplotlib") is None:
-        remedy = "install it: pip install 'obbtree[plot]'"
+        remedy = "install it: pip install matplotlib"
         raise UsageError("--plot", "needs the package matplotlib", remedy)
     if not Path(name).resolve().parent.is_dir():
         raise OutputError(name, "cannot be written: its folder is not there", "create it first")

@@ -68,7 +68,7 @@ sweep_options = gathered(
             type=Whole(1),
             metavar="N",
             help="Start a Dask cluster of N processes for it [default: threads alone]; needs "
-            "obbtree[distributed].",
+            "distributed.",
         ),
         option(
             _SWEEP, "--scheduler", metavar="ADDRESS", help="Use the Dask cluster that is there."
@@ -145,7 +145,7 @@ def _check_cluster(how: SweepOptions) -> None:
         fault = f"--{given[0]} and --{given[1]} say differently where rows are answered"
         raise UsageError(f"--{given[1]}", fault, "leave one of them out")
     if given in (["scheduler"], ["workers"]) and find_spec("distributed") is None:
-        remedy = "install it: pip install 'obbtree[distributed]'"
+        remedy = "install it: pip install distributed"
         raise UsageError(f"--{given[0]}", "needs the package distributed", remedy)
 
 

@@ -106,7 +106,7 @@ _wanted_options = gathered(
             "--plot",
             type=PathName(),
             metavar="FILE",
-            help="Draw error against time into FILE, .svg or .png; needs obbtree[plot].",
+            help="Draw error against time into FILE, .svg or .png; needs matplotlib.",
         ),
     ),
 )
@@ -173,7 +173,7 @@ def _check_places(asked: _Asked) -> None:
     if not Path(name).resolve().parent.is_dir():
         raise OutputError(name, "cannot be written: its folder is not there", "create it first")
     if find_spec("matplotlib") is None:
-        remedy = "install it: pip install 'obbtree[plot]'"
+        remedy = "install it: pip install matplotlib"
         raise UsageError("--plot", "needs the package matplotlib", remedy)
     keep_inputs(Path(name), (asked.a, asked.b))
 

@@ -58,7 +58,7 @@ Examples:
 @view_options
 @about_two(
     "Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.",
-    f"Draw into FILE, which is required: {_NAMED} (the first two need obbtree[view]).",
+    f"Draw into FILE, which is required: {_NAMED} (the first two need trimesh).",
     is_b_required=False,
     takes_dash=False,
 )
@@ -98,7 +98,7 @@ def _target(asked: Asked, how: ViewOptions) -> Path:
     if suffix not in _FORMATS:
         raise UsageError(f"-o {target}", f"is no {_NAMED} file", "name one that is")
     if suffix in _NEED_TRIMESH and find_spec("trimesh") is None:
-        remedy = "install it: pip install 'obbtree[view]', or draw a .png"
+        remedy = "install it: pip install trimesh, or draw a .png"
         raise UsageError(f"-o {target}", "needs the package trimesh", remedy)
     for name, value in (("--zoom", how.zoom), ("--size", how.size)):
         if value is not None and suffix != ".png":
