@@ -14,7 +14,7 @@ SOURCES := $(wildcard $(addprefix $(KERNELS)/,*/*.cpp */*.hpp CMakeLists.txt))
 CPP := $(filter-out %.txt,$(SOURCES))
 
 # Those that reach the kernels; the other half checks oracles and scenes.
-SANITIZE_TESTS ?= $(filter-out %_readme.py %_readme_scripts.py %_faults.py %_safety.py %_imports.py %_oracles.py %_oracles_mesh.py %_oracles_screw.py %_scenes.py %_strategies.py %_codebase.py %_sample_meshes.py,$(wildcard tests/*/test_*.py tests/test_*.py))
+SANITIZE_TESTS ?= $(filter-out tests/manual/% %_faults.py %_safety.py %_imports.py %_oracles.py %_oracles_mesh.py %_oracles_screw.py %_scenes.py %_strategies.py %_codebase.py %_sample_meshes.py,$(wildcard tests/*/test_*.py tests/test_*.py))
 
 SHELL := /bin/sh
 .SHELLFLAGS := -eu -c
@@ -40,7 +40,7 @@ help:
 	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
 	@echo 'make test-oldest  the tests with the oldest packages allowed; test-newest with the newest'
 	@echo 'make wheel     an sdist, a wheel of it, and that it works where there is no compiler'
-	@echo 'make pictures  the pictures of the README, again'
+	@echo 'make pictures  the pictures of README and manual, again'
 	@echo 'make browser   the pages that obbtree view writes, in a headless Chromium (CHROMIUM=...)'
 	@echo 'make stub      write the kernels'"'"' type stub again'
 	@echo 'make clean     remove .venv, .build and caches'

@@ -22,7 +22,7 @@ from obbcli import primitives
 
 CONVENTIONS = """\
 Lengths are in mesh units, times in s, angles in radians, angular velocities in rad/s; coordinates
-are right-handed. What each answer promises stands in the README, section Guarantees.
+are right-handed. What each answer promises stands in the manual: `obbtree manual guarantees`.
 """
 
 

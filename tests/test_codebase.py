@@ -22,7 +22,7 @@ LONGEST_FILE = 400
 # Each may import those of rows above it, and of its own row as long as no circle comes of it.
 LAYERS = (
     ("errors", "version"),
-    ("files", "arrays", "threads", "spelling", "accuracy", "answers"),
+    ("files", "arrays", "threads", "spelling", "accuracy", "answers", "manual"),
     ("kernels",),
     ("mesh",),
     ("motion", "primitives"),

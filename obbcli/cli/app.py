@@ -20,6 +20,7 @@ _GROUPS = {
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},
     "Pictures": {"view": "view"},
     "Files": {"build": "build", "info": "info", "schema": "schema"},
+    "Reading": {"manual": "manual"},
 }
 _COMMANDS = {name: module for group in _GROUPS.values() for name, module in group.items()}
 
@@ -33,7 +34,8 @@ obbtree: do these two triangle meshes touch while they move, and when and where 
   obbtree scene cell.toml
       the same of many bodies, earliest first
 
-obbtree --help lists all commands; obbtree COMMAND --help tells all of one.
+obbtree --help lists all commands; obbtree COMMAND --help tells all of one;
+obbtree manual lists what there is to read.
 """
 
 _EPILOG = """\b

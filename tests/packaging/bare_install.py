@@ -35,7 +35,7 @@ def libraries(wheel: Path) -> dict[str, set[str]]:
 
 
 def ask(environment: Path) -> dict[str, object]:
-    """Return what the installed command says of two gears that are pushed together."""
+    """Return what the installed command says of two gears pushed together; it has its manual."""
     gears = [
         str(SAMPLES / "gear.stl"),
         str(SAMPLES / "pinion.stl"),
@@ -50,6 +50,12 @@ def ask(environment: Path) -> dict[str, object]:
         child = subprocess.run(
             command, cwd=elsewhere, env=bare, check=True, capture_output=True, text=True
         )
+        manual = [command[0], "manual", "tour"]
+        shown = subprocess.run(
+            manual, cwd=elsewhere, env=bare, check=True, capture_output=True, text=True
+        )
+    if not shown.stdout.startswith("# A tour"):
+        sys.exit("the manual is not in the wheel")
     result: dict[str, object] = json.loads(child.stdout)["result"]
     return result
 

@@ -1,4 +1,4 @@
-"""The README's hook and workflow do what they say: they pass, and stop what should not pass."""
+"""The hook and the workflow of the manual pass, and stop what should not pass."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
-from test_readme import ROOT, TOOLS, blocks
+from manual.pages import ROOT, TOOLS, blocks
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,8 +19,8 @@ BOARD = "sample_meshes/board.vtk"
 
 
 def example(key: str) -> tuple[str, Any]:
-    """Return the README's YAML block that has a key, as text and parsed."""
-    texts = [text for _, text in blocks("yaml")]
+    """Return the YAML block that has a key, as text and parsed."""
+    texts = [block.text for block in blocks("yaml")]
     found = [(text, parsed) for text in texts if key in (parsed := yaml.safe_load(text))]
     assert len(found) == 1
     return found[0]
