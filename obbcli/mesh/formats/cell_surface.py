@@ -1,16 +1,20 @@
-"""The surface of a mesh of cells: its faces, and of its volume cells those met only once.
-
-Node numbering is VTK's, which meshio turns every format into; of cells with more nodes than corners
-(quadratic ones) the corners are used, which come first.
-"""
+"""The surface of a mesh of cells: its faces, and of its volume cells those met only once."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from obbcli.mesh.formats.polygons import fans
+from obbcli.mesh.formats.cell_faces import (
+    check_nodes,
+    faces_of_cells,
+    faces_of_polyhedra,
+    faces_of_volumes,
+    polygons,
+)
+from obbcli.mesh.formats.cell_types import CELLS, WITHOUT_AREA
+from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import counted, its
 
 if TYPE_CHECKING:
@@ -18,163 +22,99 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-#: Faces of each volume cell, corners counter-clockwise seen from outside (VTK).
-_VOLUMES: dict[str, tuple[tuple[int, ...], ...]] = {
-    "tetra": ((0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)),
-    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
-    "wedge": ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
-    "hexahedron": (
-        (0, 4, 7, 3),
-        (1, 2, 6, 5),
-        (0, 1, 5, 4),
-        (3, 7, 6, 2),
-        (0, 3, 2, 1),
-        (4, 5, 6, 7),
-    ),
-}
-_SURFACES = {"triangle": 3, "quad": 4}
-#: Cells without area, which no surface is made of.
-_IGNORED = ("vertex", "line", "VTK_LAGRANGE_CURVE")
-#: VTK's names of cells of any order, by those of first order.
-_LAGRANGE = {
-    "VTK_LAGRANGE_TRIANGLE": "triangle",
-    "VTK_LAGRANGE_QUADRILATERAL": "quad",
-    "VTK_LAGRANGE_TETRAHEDRON": "tetra",
-    "VTK_LAGRANGE_PYRAMID": "pyramid",
-    "VTK_LAGRANGE_WEDGE": "wedge",
-    "VTK_LAGRANGE_HEXAHEDRON": "hexahedron",
-}
-
-#: Rows of corners, and how many of each row count; the rest is -1.
-Faces = tuple["NDArray[np.int64]", "NDArray[np.int64]"]
+    from obbcli.mesh.formats.cell_faces import Faces
+    from obbcli.mesh.source import Source
 
 
-class UnknownCellError(Exception):
-    """A cell's type is none of those whose faces are known."""
+class Block(NamedTuple):
+    """Cells of one type.
+
+    Attributes:
+        kind: a name of `CELLS` or `WITHOUT_AREA`, `polygon` or `polyhedron`.
+        nodes: (N, nodes of one cell), rows of the points, numbered as VTK does; -1 stands for a
+            middle node that a cell does not have. Of polyhedra a list: cells, their faces, corners.
+        places: (N,), where each cell stands among the cells of all blocks, which makes the order
+            of the triangles; None: after the blocks before.
+    """
+
+    kind: str
+    nodes: Any
+    places: NDArray[np.int64] | None = None
 
 
-def surface(blocks: Iterable[tuple[str, Any]], points: NDArray[np.float64]) -> NDArray[np.int64]:
+def surface(
+    source: Source, points: NDArray[np.float64], blocks: Iterable[Block]
+) -> NDArray[np.int64]:
     """Return the triangles of a mesh of cells, (F, 3).
 
     First the surface cells in order; then, cell by cell and face by face, the faces that exactly
-    one volume cell has and that are not among the surface cells (meshers write both).
+    one volume cell has and that are not among the surface cells (meshers write both). Faces are
+    compared by their corners. Those with middle nodes are cut into flat pieces through all their
+    nodes. What is changed is told in the source's notes.
 
     Args:
-        blocks: type and corners (N, nodes) of each block of cells, in the file's order.
-        points: (V, 3), by which the faces of volume cells are turned outwards.
+        source: the file, which is given the notes.
+        points: (V, 3); by them the faces of volume cells are turned outwards.
+        blocks: the cells, in the file's order.
 
     Raises:
-        UnknownCellError: a type whose faces are not known.
+        MeshError: a type whose faces are not known, or a node that is no point.
     """
-    flat, solid = [], []
-    for name, cells in blocks:
-        kind = _LAGRANGE.get(name, name).rstrip("0123456789")
-        if kind in _IGNORED or len(cells) == 0:
+    flat: list[Faces] = []
+    solid: list[Faces] = []
+    start = volume_count = 0
+    for block in blocks:
+        count = len(block.nodes)
+        places = block.places if block.places is not None else start + np.arange(count)
+        start += count
+        if block.kind in WITHOUT_AREA or count == 0:
             continue
-        if kind in _SURFACES or kind == "polygon":
-            corners = _corners(name, cells, _SURFACES.get(kind, 3))
-            flat.append(_padded(corners[:, : _SURFACES.get(kind, corners.shape[1])]))
-        elif kind in _VOLUMES:
-            least = 1 + max(corner for face in _VOLUMES[kind] for corner in face)
-            solid.append(_faces_of(_corners(name, cells, least), _VOLUMES[kind], points))
-        elif kind == "polyhedron":
-            solid.append(_ragged([face for cell in cells for face in cell]))
+        if block.kind == "polyhedron":
+            volume_count += count
+            solid += faces_of_polyhedra(source, block.nodes, places, len(points))
+            continue
+        nodes = _checked(source, block, len(points))
+        if block.kind == "polygon":
+            flat.append(polygons(nodes, places))
+        elif (cell := CELLS[block.kind]).is_volume:
+            volume_count += count
+            solid += faces_of_volumes(cell, nodes, places, points)
         else:
-            raise UnknownCellError(name)
-    given, given_counts = _stacked(flat)
-    faces, counts = _stacked(solid)
-    once = _met_once(given, faces)
-    return fans(*_unpadded(*_stacked([(given, given_counts), (faces[once], counts[once])])))
+            flat += faces_of_cells(cell, nodes, places)
+    once = _met_once(flat, solid)
+    kept = [faces.only(rows) for faces, rows in zip(solid, once, strict=True)]
+    _tell(source, volume_count, flat, kept)
+    pieces, counts = _in_order(flat, kept)
+    return triangulated(source, points, pieces, counts)
 
 
-def changes(blocks: Iterable[tuple[str, Any]]) -> list[str]:
-    """Return what `surface` does not take as it stands in the file, a sentence each."""
-    volumes = curved = 0
-    for name, cells in blocks:
-        kind = _LAGRANGE.get(name, name).rstrip("0123456789")
-        faces = _VOLUMES.get(kind, ())
-        least = _SURFACES.get(kind) or len({corner for face in faces for corner in face})
-        volumes += len(cells) if kind in _VOLUMES or kind == "polyhedron" else 0
-        curved += len(cells) if least and np.shape(cells)[-1] > least else 0
-    notes = []
-    if volumes:
-        notes.append(f"{counted(volumes, 'volume cell')} taken as {its(volumes)} boundary")
-    if curved:
-        notes.append(f"{counted(curved, 'curved cell')} flattened to {its(curved)} corners")
-    return notes
+def _checked(source: Source, block: Block, point_count: int) -> NDArray[np.int64]:
+    """Return the cells of a block as an array of as many columns as their type has nodes."""
+    kind = block.kind
+    nodes = np.asarray(block.nodes)
+    remedy = "convert them to triangles or tetrahedra"
+    if kind not in CELLS and kind != "polygon":
+        raise source.error(f"cells of type {kind} are not read", remedy)
+    wanted = CELLS[kind].node_count if kind in CELLS else max(3, nodes.shape[-1])
+    if nodes.ndim != 2 or nodes.dtype.kind not in "iu" or nodes.shape[1] != wanted:
+        fault = f"cells of type {kind} with {nodes.shape[-1]} nodes are not read"
+        raise source.error(fault, remedy)
+    corner_count = 1 + max(max(face.corners) for face in CELLS[kind].faces) if kind in CELLS else 0
+    missing = (nodes == -1) & (np.arange(wanted) >= (corner_count or wanted))
+    check_nodes(source, kind, np.where(missing, 0, nodes), point_count)
+    return nodes.astype(np.int64)
 
 
-def _corners(name: str, cells: Any, least: int) -> NDArray[np.int64]:
-    """Return cells as an array of at least as many columns as their type has corners."""
-    corners = np.asarray(cells, dtype=np.int64)
-    if corners.ndim != 2 or corners.shape[1] < least:
-        raise UnknownCellError(f"{name} with {corners.shape[-1]} corners")
-    return corners
-
-
-def _padded(corners: NDArray[np.int64], wide: int = 4) -> Faces:
-    """Return rows of equal length widened by -1 to at least `wide`."""
-    count, width = corners.shape
-    rows = np.full((count, max(wide, width)), -1, dtype=np.int64)
-    rows[:, :width] = corners
-    return rows, np.full(count, width, dtype=np.int64)
-
-
-def _ragged(faces: list[Any]) -> Faces:
-    """Return faces of different lengths as padded rows."""
-    counts = np.array([len(face) for face in faces], dtype=np.int64)
-    rows = np.full((len(faces), max(4, int(counts.max()))), -1, dtype=np.int64)
-    for row, face in zip(rows, faces, strict=True):
-        row[: len(face)] = face
-    return rows, counts
-
-
-def _faces_of(
-    cells: NDArray[np.int64], local: tuple[tuple[int, ...], ...], points: NDArray[np.float64]
-) -> Faces:
-    """Return the faces of all cells, those of one cell together, turned outwards.
-
-    By the cell's own volume: writers disagree on which way a wedge is numbered.
-    """
-    rows = np.full((len(cells), len(local), 4), -1, dtype=np.int64)
-    for face, corners in enumerate(local):
-        rows[:, face, : len(corners)] = cells[:, corners]
-    inverted = _signed_volumes(rows, points) < 0
-    for face, corners in enumerate(local):
-        rows[inverted, face, : len(corners)] = cells[inverted][:, corners[::-1]]
-    counts = np.tile([len(corners) for corners in local], len(cells))
-    return rows.reshape(-1, 4), counts.astype(np.int64)
-
-
-def _signed_volumes(rows: NDArray[np.int64], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a multiple of each cell's volume by its faces (N, faces, 4): above 0 if outwards."""
-    finite = np.where(np.isfinite(points), points, 0.0)
-    exponent = np.frexp(np.abs(finite).max(initial=0.0))[1]
-    corners = np.ldexp(finite, -exponent)[rows]
-    a, b, c, d = np.moveaxis(corners - corners[:, :1, :1], 2, 0)
-    # A face of three corners is padded with -1, which no product may see.
-    d = np.where((rows[:, :, 3] < 0)[:, :, np.newaxis], c, d)
-    products = a * np.cross(b, c) + a * np.cross(c, d)
-    return np.asarray(products.sum(axis=(1, 2)))
-
-
-def _stacked(blocks: list[Faces]) -> Faces:
-    """Return all blocks' rows under one another, padded to one width."""
-    width = max([4, *(rows.shape[1] for rows, _ in blocks)])
-    rows = [_padded(rows, width)[0] for rows, _ in blocks]
-    empty = np.zeros((0, width), dtype=np.int64)
-    none = np.zeros(0, dtype=np.int64)
-    return np.vstack([empty, *rows]), np.hstack([none, *(counts for _, counts in blocks)])
-
-
-def _met_once(given: NDArray[np.int64], faces: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return which of `faces` no other row of `faces` and none of `given` has the corners of.
+def _met_once(given: list[Faces], faces: list[Faces]) -> list[NDArray[np.bool_]]:
+    """Return which of `faces` no other of `faces` and none of `given` has the corners of.
 
     Corners are compared as sets, so a hexahedron collapsed to a wedge meets its neighbours; a face
     collapsed to fewer than three corners is none.
     """
-    width = max(given.shape[1], faces.shape[1])
-    rows = np.sort(np.vstack([_padded(faces, width)[0], _padded(given, width)[0]]), axis=1)
+    width = max([4, *(each.corners.shape[1] for each in (*given, *faces))])
+    rows = np.vstack([np.zeros((0, width), np.int64), *(_padded(f.corners, width) for f in faces)])
+    rows = np.vstack([rows, *(_padded(f.corners, width) for f in given)])
+    rows.sort(axis=1)
     rows[:, 1:][rows[:, 1:] == rows[:, :-1]] = -1
     rows.sort(axis=1)
     order = np.lexsort(rows.T)
@@ -185,19 +125,77 @@ def _met_once(given: NDArray[np.int64], faces: NDArray[np.int64]) -> NDArray[np.
     alone[:-1][same] = False
     once = np.empty(len(rows), dtype=bool)
     once[order] = alone
-    real = (rows >= 0).sum(axis=1) >= 3
-    result: NDArray[np.bool_] = (once & real)[: len(faces)]
-    return result
+    real = once & ((rows >= 0).sum(axis=1) >= 3)
+    ends = np.cumsum([len(each.corners) for each in faces])
+    return np.split(real[: ends[-1] if len(ends) else 0], ends[:-1]) if faces else []
 
 
-def _unpadded(rows: NDArray[np.int64], counts: NDArray[np.int64]) -> Faces:
+def _padded(corners: NDArray[np.int64], width: int) -> NDArray[np.int64]:
+    """Return rows widened by -1."""
+    rows = np.full((len(corners), width), -1, dtype=np.int64)
+    rows[:, : corners.shape[1]] = corners
+    return rows
+
+
+def _in_order(flat: list[Faces], solid: list[Faces]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the pieces of all faces, end to end, with each one's count of corners.
+
+    Ordered by: surface cells before volumes, cells, faces of a cell, pieces of a face.
+    """
+    both = [*((0, faces) for faces in flat), *((1, faces) for faces in solid)]
+    width = max([4, *(faces.pieces.shape[2] for _, faces in both)])
+    rows, keys = [np.zeros((0, width), np.int64)], [np.zeros((0, 3), np.int64)]
+    for side, faces in both:
+        pieces = faces.pieces.reshape(-1, faces.pieces.shape[2])
+        place = np.repeat(faces.places, faces.pieces.shape[1])
+        key = np.stack(
+            [np.full_like(place, side), place, np.full_like(place, faces.number)], axis=1
+        )
+        real = _distinct(pieces) >= 3 if faces.is_cut else np.ones(len(pieces), dtype=bool)
+        rows.append(_padded(pieces[real], width))
+        keys.append(key[real])
+    stacked, key = np.vstack(rows), np.vstack(keys)
+    # Stable: the pieces of a face stay in their order.
+    order = np.lexsort((key[:, 2], key[:, 1], key[:, 0]))
+    return _unpadded(stacked[order])
+
+
+def _distinct(pieces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return how many different nodes each polygon has."""
+    ordered = np.sort(pieces, axis=1)
+    new = np.ones(ordered.shape, dtype=bool)
+    new[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    return np.asarray((new & (ordered >= 0)).sum(axis=1))
+
+
+def _unpadded(rows: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners that count, end to end, with each row's count.
 
     A corner that repeats the one before it is dropped while three are left: formats that know only
     quads write a triangle so.
     """
-    inside = np.arange(rows.shape[1]) < counts[:, np.newaxis]
+    inside = rows >= 0
     distinct = inside.copy()
     distinct[:, 1:] &= rows[:, 1:] != rows[:, :-1]
     keep = np.where((distinct.sum(axis=1) >= 3)[:, np.newaxis], distinct, inside)
     return rows[keep], keep.sum(axis=1)
+
+
+def _tell(source: Source, volume_count: int, flat: list[Faces], solid: list[Faces]) -> None:
+    """Write the notes: volumes taken as their boundary, and faces cut at their nodes."""
+    if volume_count:
+        what = counted(volume_count, "volume cell")
+        source.note(f"{what} taken as {its(volume_count)} boundary")
+    for name in dict.fromkeys(faces.name for faces in flat):
+        _tell_cut(source, name, "", [faces for faces in flat if faces.name == name])
+    _tell_cut(source, "quadratic face", " of volume cells", solid)
+
+
+def _tell_cut(source: Source, name: str, more: str, faces: list[Faces]) -> None:
+    """Write the note on faces that are cut at their middle nodes, where there are any."""
+    cut = [each for each in faces if each.is_cut]
+    count = sum(len(each.corners) for each in cut)
+    pieces = sum(len(each.corners) * each.pieces.shape[1] for each in cut)
+    if count:
+        what = counted(count, name) + more
+        source.note(f"{what} cut into {pieces} flat pieces through {its(count)} nodes")
