@@ -81,7 +81,7 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     """Return the mesh in a file: its suffix, in any case, says which format is expected.
 
     Triangle ids are rows of the file's faces after triangulation, in the file's order; polygons
-    become fans about their first corner, cells the faces that `cell_surface.surface` lists.
+    of n corners become n - 2 rows, cells the faces that `cell_surface.surface` lists.
 
     Args:
         path: the file.

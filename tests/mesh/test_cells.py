@@ -7,8 +7,16 @@ import pytest
 import trimesh
 from cell_files import CUBE, HEXAHEDRON, POINTS, SURFACE_KINDS, VOLUME_KINDS, write
 
+from obbcli.errors import MeshError
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.mesh.formats.cell_surface import UnknownCellError, surface
+from obbcli.mesh.formats import cell_surface
+from obbcli.mesh.formats.cell_surface import Block
+from obbcli.mesh.source import Source
+
+
+def surface(cells, points):
+    """Return the triangles of cells, (kind, rows) each."""
+    return cell_surface.surface(Source("x", "x", b""), points, [Block(*cell) for cell in cells])
 
 
 def volume(mesh):
@@ -80,20 +88,6 @@ def test_boundary_faces_outwards_whichever_way_cells_are_numbered(kind, row, sca
     assert volume(Mesh(POINTS, triangles)) > 0
 
 
-def test_boundary_uses_the_corners_of_quadratic_cells():
-    rows = [[0, 1, 3, 4, *range(9, 15)]]
-
-    points = np.vstack([POINTS, np.zeros((6, 3))])
-    quadratic = surface(
-        [("tetra10", np.array(rows)), ("triangle6", np.array([[0, 1, 2, 9, 9, 9]]))], points
-    )
-    linear = surface(
-        [("tetra", np.array([[0, 1, 3, 4]])), ("triangle", np.array([[0, 1, 2]]))], points
-    )
-
-    assert quadratic.tolist() == linear.tolist()
-
-
 def test_boundary_puts_surface_cells_first_and_repeats_none_of_them():
     tetra = [("tetra", np.array([[0, 1, 3, 4]]))]
     alone = surface(tetra, POINTS)
@@ -130,7 +124,7 @@ def test_boundary_of_polyhedra_is_what_one_cell_alone_has():
     cube = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
     roof = [[4, 7, 6, 5], [4, 5, 8], [5, 6, 8], [6, 7, 8], [7, 4, 8]]
 
-    mesh = Mesh(POINTS, surface([("polyhedron8", [cube]), ("polyhedron5", [roof])], POINTS))
+    mesh = Mesh(POINTS, surface([("polyhedron", [cube]), ("polyhedron", [roof])], POINTS))
 
     assert len(mesh.triangles) == 10 + 4
     assert mesh.is_watertight
@@ -152,8 +146,30 @@ def test_boundary_ignores_points_and_lines_and_refuses_unknown_cells():
     thin = [("vertex", np.array([[0]])), ("line3", np.array([[0, 1, 2]]))]
 
     assert len(surface(thin, POINTS)) == 0
-    with pytest.raises(UnknownCellError, match="hexa_prism"):
-        surface([("hexa_prism", np.array([[0] * 12]))], POINTS)
+    with pytest.raises(MeshError, match="x: cells of type hexa_wedge are not read; convert them"):
+        surface([("hexa_wedge", np.array([[0] * 12]))], POINTS)
+    with pytest.raises(MeshError, match="cells of type tetra with 5 nodes are not read"):
+        surface([("tetra", np.array([[0, 1, 2, 3, 4]]))], POINTS)
+
+
+@pytest.mark.parametrize("bad", [-1, 9])
+@pytest.mark.parametrize("kind", ["triangle", "tetra", "polygon", "polyhedron"])
+def test_boundary_refuses_points_that_are_not_there(kind, bad):
+    rows = {"triangle": [[0, 1, bad]], "tetra": [[0, 1, 3, bad]], "polygon": [[0, 1, 2, 3, bad]]}
+    cells = rows.get(kind, [[[0, 1, 2], [0, 1, bad]]])
+
+    with pytest.raises(MeshError, match=f"{kind}.* uses point {bad} of 9"):
+        surface([(kind, cells)], POINTS)
+
+
+def test_boundary_keeps_the_order_of_the_file_among_blocks():
+    triangles = Block("triangle", np.array([[0, 1, 2], [4, 5, 6]]), np.array([3, 0]))
+    quads = Block("quad", np.array([[0, 1, 5, 4], [1, 2, 6, 5]]), np.array([1, 2]))
+
+    found = cell_surface.surface(Source("x", "x", b""), POINTS, [triangles, quads])
+
+    quad_rows = [[0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5]]
+    assert found.tolist() == [[4, 5, 6], *quad_rows, [0, 1, 2]]
 
 
 def test_cells_lay_flat_meshes_at_zero(tmp_path):

@@ -31,8 +31,8 @@ CELL_TYPES 2
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
-        (b"3 0 2 3", b"3 0 2 4", r"cell block 0 \(triangle\): cell 1 uses point 4 of 4"),
-        (b"3 0 2 3", b"3 0 2 -1", r"cell 1 uses point -1 of 4"),
+        (b"3 0 2 3", b"3 0 2 4", r"triangle 1 uses point 4 of 4"),
+        (b"3 0 2 3", b"3 0 2 -1", r"triangle 1 uses point -1 of 4"),
         (b"1 1 0", b"1 nan 0", r"vertex 2: y is nan"),
         (b"1 1 0", b"1 inf 0", r"vertex 2: y is inf"),
         (b"POINTS 4", b"POINTS 4000000000", r":5: claims 4000000000 of something"),

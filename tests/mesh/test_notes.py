@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pytest
 from cell_files import HEXAHEDRON, write
 
@@ -148,11 +147,3 @@ def test_sweeps_tell_notes_and_go_on(here: Path, capsys: pytest.CaptureFixture[s
     header = json.loads((here / "r.jsonl").read_text().splitlines()[0])
     assert header["inputs"]["b"]["notes"] == [NOTE]
     assert documented(capsys, *words, "--resume")["result"]["resumed_from"] == 1
-
-
-def test_second_order_cells_are_told(tmp_path: Path) -> None:
-    corners = [[0.0, 0, 0], [2, 0, 0], [0, 2, 0]]
-    points = np.array([*corners, [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    write(tmp_path / "a.vtk", [("triangle6", np.arange(6).reshape(1, 6))], points)
-
-    assert load_mesh(tmp_path / "a.vtk").notes == ("1 curved cell flattened to its corners",)

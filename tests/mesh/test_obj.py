@@ -37,8 +37,8 @@ def test_obj_reads_every_form_of_face(face):
     assert triangles(SQUARE + face + b"\n") == [[0, 1, 2]]
 
 
-def test_obj_cuts_polygons_into_fans_in_place():
-    faces = b"f 1 2 3\nf 1 2 3 4\nf 2 3 4\nf 4 3 2 1 2\nf 3 2 1\n"
+def test_obj_cuts_convex_polygons_into_fans_in_place():
+    faces = b"f 1 2 3\nf 1 2 3 4\nf 2 3 4\nf 4 3 2 1 1\nf 3 2 1\n"
 
     assert triangles(SQUARE + faces) == [
         [0, 1, 2],
@@ -47,7 +47,7 @@ def test_obj_cuts_polygons_into_fans_in_place():
         [1, 2, 3],
         [3, 2, 1],
         [3, 1, 0],
-        [3, 0, 1],
+        [3, 0, 0],
         [2, 1, 0],
     ]
 

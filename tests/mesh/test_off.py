@@ -12,8 +12,8 @@ from obbcli.mesh import load_mesh, load_mesh_bytes
 SQUARE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n"
 
 
-def test_off_cuts_polygons_into_fans_in_place():
-    data = SQUARE.replace(b"4 2 0", b"4 4 0") + b"3 3 2 1\n5 3 2 1 0 1\n"
+def test_off_cuts_convex_polygons_into_fans_in_place():
+    data = SQUARE.replace(b"4 2 0", b"4 4 0") + b"3 3 2 1\n5 3 2 1 0 0\n"
 
     mesh = load_mesh_bytes(data, ".off")
 
@@ -25,7 +25,7 @@ def test_off_cuts_polygons_into_fans_in_place():
         [3, 2, 1],
         [3, 2, 1],
         [3, 1, 0],
-        [3, 0, 1],
+        [3, 0, 0],
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -96,7 +97,7 @@ def _turned(pieces: NDArray[np.int64]) -> NDArray[np.int64]:
     while short.any():
         turned[short] = np.roll(turned[short], -1, axis=1)
         short = turned[:, :, 0] < 0
-    return turned
+    return np.asarray(turned)
 
 
 def _signed_volumes(
@@ -110,7 +111,7 @@ def _signed_volumes(
     total = np.zeros(len(nodes))
     for face in faces:
         ring = [places[nodes[:, corner]] - origin for corner in face]
-        for b, c in zip(ring[1:-1], ring[2:], strict=True):
+        for b, c in pairwise(ring[1:]):
             total += (ring[0] * np.cross(b, c)).sum(axis=1)
     return total
 

@@ -148,9 +148,8 @@ def _in_order(flat: list[Faces], solid: list[Faces]) -> tuple[NDArray[np.int64],
     for side, faces in both:
         pieces = faces.pieces.reshape(-1, faces.pieces.shape[2])
         place = np.repeat(faces.places, faces.pieces.shape[1])
-        key = np.stack(
-            [np.full_like(place, side), place, np.full_like(place, faces.number)], axis=1
-        )
+        key = np.full((len(place), 3), (side, 0, faces.number))
+        key[:, 1] = place
         real = _distinct(pieces) >= 3 if faces.is_cut else np.ones(len(pieces), dtype=bool)
         rows.append(_padded(pieces[real], width))
         keys.append(key[real])
@@ -158,6 +157,12 @@ def _in_order(flat: list[Faces], solid: list[Faces]) -> tuple[NDArray[np.int64],
     # Stable: the pieces of a face stay in their order.
     order = np.lexsort((key[:, 2], key[:, 1], key[:, 0]))
     return _unpadded(stacked[order])
+
+
+def _triangle_count(pieces: NDArray[np.int64]) -> int:
+    """Return how many triangles the pieces of faces become."""
+    counts = _distinct(pieces.reshape(-1, pieces.shape[2])) - 2
+    return int(counts[counts > 0].sum())
 
 
 def _distinct(pieces: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -195,7 +200,7 @@ def _tell_cut(source: Source, name: str, more: str, faces: list[Faces]) -> None:
     """Write the note on faces that are cut at their middle nodes, where there are any."""
     cut = [each for each in faces if each.is_cut]
     count = sum(len(each.corners) for each in cut)
-    pieces = sum(len(each.corners) * each.pieces.shape[1] for each in cut)
+    pieces = sum(_triangle_count(each.pieces) for each in cut)
     if count:
         what = counted(count, name) + more
         source.note(f"{what} cut into {pieces} flat pieces through {its(count)} nodes")

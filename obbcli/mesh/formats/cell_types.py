@@ -70,7 +70,10 @@ class Cell(NamedTuple):
 
 #: Cells without area, which no surface is made of: passed over.
 WITHOUT_AREA = frozenset(
-    ("empty", "vertex", "polyvertex", "polyline", "line", "line3", "line4", "VTK_LAGRANGE_CURVE")
+    (
+        *("empty", "vertex", "polyvertex", "polyline", "VTK_LAGRANGE_CURVE"),
+        *("line", *(f"line{count}" for count in range(3, 12))),
+    )
 )
 
 _TRIANGLE = ((0, 1, 2),)

@@ -10,11 +10,11 @@ import tempfile
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from obbcli.mesh.formats.cell_surface import UnknownCellError, changes, surface
+from obbcli.mesh.formats.cell_surface import Block, surface
 from obbcli.mesh.formats.claimed_counts import check_claims, check_count
 from obbcli.mesh.formats.meshio_guard import ending_files, fenced
 
@@ -24,6 +24,25 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.mesh.source import MeshArrays, Source
+
+
+#: VTK's cells of any order with so many nodes that these are numbered as in others.
+_SAME_AS = {
+    ("VTK_LAGRANGE_TRIANGLE", 3): "triangle",
+    ("VTK_LAGRANGE_TRIANGLE", 6): "triangle6",
+    ("VTK_LAGRANGE_QUADRILATERAL", 4): "quad",
+    ("VTK_LAGRANGE_QUADRILATERAL", 9): "quad9",
+    ("VTK_LAGRANGE_TETRAHEDRON", 4): "tetra",
+    ("VTK_LAGRANGE_TETRAHEDRON", 10): "tetra10",
+    ("VTK_LAGRANGE_PYRAMID", 5): "pyramid",
+    ("VTK_LAGRANGE_WEDGE", 6): "wedge",
+    ("VTK_LAGRANGE_HEXAHEDRON", 8): "hexahedron",
+}
+#: Gmsh's numbers of the nodes that meshio leaves as they are, in VTK's order.
+_GMSH_ORDER = {
+    "pyramid14": [0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13],
+    "wedge18": [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16],
+}
 
 
 def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
@@ -45,21 +64,20 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
         with _as_file(source, suffix) as path, ending_files("meshio.", path):
             mesh = fenced(source, "meshio", lambda: module.read(str(path)))
         points = _points(source, mesh.points)
-        blocks = [(block.type, block.data) for block in mesh.cells]
-        check_count(source, chosen, sum(len(data) for _, data in blocks))
-        for number, (name, data) in enumerate(blocks):
-            _check_indices(source, f"cell block {number} ({name})", data, len(points))
-        try:
-            triangles = surface(blocks, points)
-        except UnknownCellError as fault:
-            raise source.error(
-                f"cells of type {fault} are not read", "convert them to triangles or tetrahedra"
-            ) from fault
-        for note in changes(blocks):
-            source.note(note)
-        return points, triangles
+        blocks = [_block(chosen, block.type, block.data) for block in mesh.cells]
+        check_count(source, chosen, sum(len(block.nodes) for block in blocks))
+        return points, surface(source, points, blocks)
 
     return read
+
+
+def _block(module: str, name: str, nodes: Any) -> Block:
+    """Return cells as VTK numbers them; those of any order by the type of so many nodes."""
+    kind = name.rstrip("0123456789")
+    if kind not in ("polygon", "polyhedron"):
+        kind = _SAME_AS.get((name, np.shape(nodes)[-1]), name)
+    order = _GMSH_ORDER.get(kind) if module == "gmsh" else None
+    return Block(kind, nodes if order is None else np.asarray(nodes)[:, order])
 
 
 @contextmanager
@@ -88,26 +106,3 @@ def _points(source: Source, points: object) -> NDArray[np.float64]:
     vertices = np.zeros((len(array), 3))
     vertices[:, : array.shape[1]] = array
     return vertices
-
-
-def _check_indices(source: Source, place: str, data: object, count: int) -> None:
-    """Refuse cells that use points the file does not have, also inside of a volume."""
-    if isinstance(data, list):  # polyhedra: cells of faces of corners
-        for number, cell in enumerate(data):
-            for face in cell:
-                _check_indices(source, f"{place}, cell {number}", np.asarray([face]), count)
-        return
-    array = np.asarray(data)
-    if array.size == 0:
-        return
-    if array.ndim != 2 or array.dtype.kind not in "iu":
-        raise source.error(f"cells of shape {array.shape} and type {array.dtype}", at=place)
-    outside = (array < 0) | (array >= count)
-    if outside.any():
-        row = int(np.flatnonzero(outside.any(axis=1))[0])
-        worst = array[row][outside[row]][0]
-        raise source.error(
-            f"cell {row} uses point {worst} of {count} (counted from 0)",
-            "export it again",
-            at=place,
-        )

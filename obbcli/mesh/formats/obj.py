@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.formats.polygons import fans
+from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import (
     all_numbers,
     all_whole,
@@ -45,21 +45,22 @@ def read_obj(source: Source) -> MeshArrays:
     """Return vertices and triangles of all objects and groups, in the file's order.
 
     Indices may be negative (counted back from the last vertex so far) and carry `/vt/vn` parts;
-    polygons become fans about their first corner. Free-form surfaces are refused, not skipped.
+    polygons are cut as `triangulated` says. Free-form surfaces are refused, not skipped.
 
     Raises:
         MeshError: no statement, no number, an index out of range; with the line.
     """
-    regular = _read_regular(strip_mark(source.data))
+    regular = _read_regular(source)
     return regular or _read_statements(source)
 
 
-def _read_regular(data: bytes) -> MeshArrays | None:
+def _read_regular(source: Source) -> MeshArrays | None:
     """Return the mesh where all vertices are alike and so are all faces, or None.
 
     Whole columns at a time, three times as fast; anything odd is left to `_read_statements`, which
     knows what to do or what to say.
     """
+    data = strip_mark(source.data)
     if b"\\" in data:
         return None
     lines = data.splitlines()
@@ -83,7 +84,8 @@ def _read_regular(data: bytes) -> MeshArrays | None:
     if any(column is None for column in columns):
         return None
     points = np.stack([column for column in columns if column is not None], axis=1)
-    return points, fans(corners - 1, np.full(len(faces), count))
+    counts = np.full(len(faces), count)
+    return points, triangulated(source, points, corners - 1, counts)
 
 
 def _keyword(line: bytes) -> bytes:
@@ -121,7 +123,8 @@ def _read_statements(source: Source) -> MeshArrays:
     vertices = np.array(coordinates, dtype=np.float64).reshape(-1, 3)
     if corners and max(corners) >= len(vertices):
         raise _out_of_range(source, len(vertices))
-    return vertices, fans(np.array(corners, dtype=np.int64), np.array(counts, dtype=np.int64))
+    rows, widths = (np.array(values, dtype=np.int64) for values in (corners, counts))
+    return vertices, triangulated(source, vertices, rows, widths)
 
 
 def _statements(data: bytes) -> Iterator[tuple[int, list[bytes]]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.formats.polygons import fans
+from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import all_numbers, all_whole, number, strip_mark, uniform_rows, whole
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ Row = tuple[int, list[bytes]]
 
 
 def read_off(source: Source) -> MeshArrays:
-    """Return vertices and triangles of an OFF file; polygons become fans in the file's order.
+    """Return vertices and triangles of an OFF file; polygons are cut in the file's order.
 
     Raises:
         MeshError: another header, counts that do not fit the lines, a bad number or index.
@@ -51,7 +51,7 @@ def read_off(source: Source) -> MeshArrays:
         )
     vertices = _vertices(source, rows[:vertex_count])
     corners, counts = _faces(source, rows[vertex_count:], vertex_count)
-    return vertices, fans(corners, counts)
+    return vertices, triangulated(source, vertices, corners, counts)
 
 
 def _rows(data: bytes) -> list[Row]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from obbcli.mesh.formats.ply_body import read_ascii, read_binary
 from obbcli.mesh.formats.ply_header import Header, read_header
-from obbcli.mesh.formats.polygons import fans
+from obbcli.mesh.formats.polygons import triangulated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +24,7 @@ _INDEX_NAMES = ("vertex_indices", "vertex_index")
 
 
 def read_ply(source: Source) -> MeshArrays:
-    """Return vertices and triangles of a PLY file; polygons become fans in the file's order.
+    """Return vertices and triangles of a PLY file; polygons are cut in the file's order.
 
     Raises:
         MeshError: a bad header, counts that do not fit the body, a bad number or index.
@@ -46,7 +46,7 @@ def read_ply(source: Source) -> MeshArrays:
             "indices start at 0",
             at=f"face {face}",
         )
-    return vertices, fans(corners, counts)
+    return vertices, triangulated(source, vertices, corners, counts)
 
 
 def _vertices(source: Source, tables: dict[str, Columns]) -> NDArray[np.float64]:
