@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats.sniff import beginning
+from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import Source, check_file, checked_source, digest_of, read_source
+from obbcli.mesh.source import Source, check_file, checked_source, digest_of, read_head, read_source
 
 if TYPE_CHECKING:
     import os
@@ -98,12 +98,15 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)
-    read = _reader(str(path), path.suffix)
-    if path.suffix.lower() == ".stl" and not hashed and path.is_file():
+    suffix = path.suffix.lower()
+    if suffix == ".stl" and not hashed and path.is_file():
         arrays = _read_binary_stl(path)
         if arrays is not None:
             return _mesh(arrays, Source(str(path), path.name, b"", path), None)
-    return _load(read_source(path), path.suffix, read, hashed=hashed)
+    if suffix not in _FORMATS:
+        # By its beginning alone: a file that is no mesh may be of any size.
+        _suffix_told(read_head(path, HEAD_BYTES), suffix)
+    return _load(read_source(path), suffix, hashed=hashed)
 
 
 def load_mesh_bytes(
@@ -120,31 +123,55 @@ def load_mesh_bytes(
     source = checked_source(Source(name, name, bytes(data)))
     if suffix is None:
         found = beginning(source.data)
-        suffix = found[0] if found else None
+        suffix = found.suffix if found else None
         if suffix is None:
-            fault = f"is {found[1]}" if found else "does not begin as any known format does"
+            _refuse_other(source, "")
+            fault = "does not begin as any known format does"
             raise source.error(fault, "put it into a file whose suffix tells its format")
-    return _load(source, suffix, _reader(name, suffix), hashed=hashed)
+    return _load(source, suffix.lower(), hashed=hashed)
 
 
-def _reader(place: str, suffix: str) -> Callable[[Source], MeshArrays]:
-    """Return the reader of files with a suffix."""
-    form = _FORMATS.get(suffix.lower())
-    if form is None:
+def _suffix_told(source: Source, suffix: str) -> str:
+    """Return the suffix of the format that a file's content shows, else its own.
+
+    Raises:
+        MeshError: it is no mesh, or neither content nor suffix tells its format.
+    """
+    found = beginning(source.data)
+    if found and found.is_sure:
+        if _FORMATS[found.suffix] != _FORMATS.get(suffix):
+            source.note(f"is {found.words} by its content, and is read as such")
+        return found.suffix
+    _refuse_other(source, suffix)
+    if suffix not in _FORMATS:
         known = " ".join(known_suffixes())
         fault = f"unknown mesh suffix '{suffix}'" if suffix else "has no suffix to tell its format"
-        raise MeshError(place, fault, f"known are {known}")
+        raise source.error(fault, f"known are {known}")
+    return suffix
+
+
+def _refuse_other(source: Source, suffix: str) -> None:
+    """Refuse what is no mesh, and say what it is."""
+    from obbcli.mesh.formats.not_meshes import not_a_mesh
+
+    other = not_a_mesh(source.data, suffix)
+    if other is not None:
+        raise source.error(*other)
+
+
+def _reader(suffix: str) -> Callable[[Source], MeshArrays]:
+    """Return the reader of files with a known suffix."""
+    form = _FORMATS[suffix]
     module = import_module(f"obbcli.mesh.formats.{form.module}")
     if form.kind is not None:
-        reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix.lower())
+        reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix)
     else:
         reader = getattr(module, f"read_{form.module}")
     return reader
 
 
-def _load(
-    source: Source, suffix: str, read: Callable[[Source], MeshArrays], *, hashed: bool
-) -> Mesh:
+def _load(source: Source, suffix: str, *, hashed: bool) -> Mesh:
+    read = _reader(_suffix_told(source, suffix))
     digest = digest_of(source.data) if hashed else None
     try:
         vertices, triangles = read(source)
@@ -185,7 +212,8 @@ def _read_binary_stl(path: Path) -> MeshArrays | None:
 def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
     """Return the error, with what the file seems to be where that is not what its name says."""
     found = beginning(source.data)
-    if found is None or found[0] == suffix.lower():
+    if found is None or found.suffix == suffix:
         return fault
-    expected = f" ({found[0]})" if found[0] else ""
-    return MeshError(fault.where, fault.fault, f"the file looks like {found[1]}{expected}")
+    looks = f"the file looks like {found.words} ({found.suffix})"
+    remedy = f"{looks}; {fault.remedy}" if fault.remedy else looks
+    return MeshError(fault.where, fault.fault, remedy)

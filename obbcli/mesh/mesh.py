@@ -192,7 +192,7 @@ def _array(value: ArrayLike, name: str, prefix: str) -> NDArray[Any]:
     try:
         array = np.asarray(value)
     except (TypeError, ValueError) as fault:
-        raise MeshError(f"{prefix}{name}", f"not an array of shape (N, 3): {fault}") from fault
+        raise MeshError(f"{prefix}{name}", "is not an array of numbers of shape (N, 3)") from fault
     if array.size == 0 and array.ndim < 2:
         array = array.reshape(0, 3).astype(np.int64)
     if array.ndim != 2 or array.shape[1] != 3:

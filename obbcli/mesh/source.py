@@ -89,6 +89,20 @@ def read_source(path: Path) -> Source:
     return checked_source(Source(str(path), path.name, data, path))
 
 
+def read_head(path: Path, size: int) -> Source:
+    """Return at most `size` bytes of a file's beginning; of a pipe nothing, as it runs once.
+
+    Raises:
+        MeshError: as in `read_source`.
+    """
+    check_file(path)
+    with _naming(path):
+        if path.is_fifo():
+            return Source(str(path), path.name, b"", path)
+        with path.open("rb") as file:
+            return checked_source(Source(str(path), path.name, file.read(size), path))
+
+
 def _drained(pipe: Path) -> bytes:
     with pipe.open("rb") as stream:
         return read_stream(stream, str(pipe))
@@ -132,7 +146,7 @@ def _naming(path: Path) -> Iterator[None]:
         ) from fault
     except (OSError, ValueError) as fault:
         # ValueError: a path that holds a NUL. OSError: too long a name, a failing disk, ...
-        reason = getattr(fault, "strerror", None) or str(fault)
+        reason = getattr(fault, "strerror", None) or "its name is none of a file"
         raise MeshError(place, f"cannot be read: {reason}") from fault
     except MemoryError as fault:
         raise MeshError(place, "does not fit into memory") from fault

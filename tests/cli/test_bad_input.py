@@ -24,9 +24,10 @@ FILES = {
     "nan.obj": (b"v 0 nan 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "nan"),
     "infinite.obj": (b"v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n", "inf"),
     "nan.stl": (GOOD[:96] + struct.pack("<f", float("nan")) + GOOD[100:], "nan"),
-    "cube.xyz": (GOOD, "unknown mesh suffix '.xyz'"),
-    "cube": (GOOD, "no suffix"),
-    "wrong.ply": (GOOD, "wrong.ply"),
+    "cube.xyz": (TRIANGLE.encode(), "unknown mesh suffix '.xyz'"),
+    "cube": (TRIANGLE.encode(), "no suffix"),
+    "wrong.ply": (GOOD[:-1], "wrong.ply"),
+    "pointer.stl": (b"version https://git-lfs.github.com/spec/v1\n", 'run "git lfs pull"'),
     "text.obbt": (b"not a tree", "is not a tree file"),
     "empty.obbt": (b"", "is not a tree file"),
 }
@@ -72,7 +73,6 @@ def test_missing_file_is_refused(here, obbtree, command, name):
 @pytest.mark.parametrize(
     ("name", "data", "guess"),
     [
-        ("cube.obj", GOOD, "looks like a binary STL file (.stl)"),
         ("cube.ply", obj(cube()).encode(), "looks like an OBJ file (.obj)"),
         ("named.stl", b"# a comment\n" + obj(cube()).encode(), "looks like an OBJ file (.obj)"),
     ],
@@ -84,6 +84,16 @@ def test_wrong_name_is_refused_with_a_guess(here, obbtree, name, data, guess):
 
     check_refusal(ended, name)
     assert guess in ended.err
+
+
+@pytest.mark.parametrize("name", ["cube.obj", "cube.xyz", "cube"])
+def test_wrong_name_is_told_where_the_content_says_what_it_is(here, obbtree, name):
+    (here / name).write_bytes(GOOD)
+
+    ended = obbtree("collide", name, "cube.stl", "--exit-code")
+
+    assert ended.code == 1
+    assert "A: is a binary STL file by its content, and is read as such" in ended.out
 
 
 @pytest.mark.parametrize("name", ["folder", "folder.stl", "folder.obbt"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
@@ -41,7 +42,7 @@ CELL_TYPES 2
         (b"CELL_TYPES 2", b"CELL_TYPES 1", r"claims 1 cells|cannot read"),
         (b"5\n5\n", b"5\n", r"claims 2 cells, but 1 could be read"),
         (b"5\n5\n", b"5\n16\n", r"meshio cannot read it|are not read"),
-        (b"UNSTRUCTURED_GRID", b"POLYDATA", r"meshio cannot read it.*POLYDATA"),
+        (b"UNSTRUCTURED_GRID", b"POLYDATA", r"meshio cannot read it"),
         (b"1 1 0", b"1 x 0", r"meshio cannot read it"),
     ],
 )
@@ -127,10 +128,11 @@ def test_cells_turn_every_exception_of_a_reader_into_a_mesh_error(monkeypatch, f
         raise fault
 
     monkeypatch.setattr("meshio.vtk.read", failing)
-    with pytest.raises(MeshError, match="words of the library") as caught:
+    with pytest.raises(MeshError, match="meshio cannot read it: it is not what a file") as caught:
         load_mesh_bytes(ASCII_VTK, ".vtk")
 
     assert caught.value.__cause__ is fault
+    assert not re.search(r"words of|Error|deep|odd", str(caught.value))
 
 
 def test_cells_let_an_interrupt_pass(monkeypatch):
@@ -145,7 +147,7 @@ def test_cells_let_an_interrupt_pass(monkeypatch):
 def test_cells_name_a_package_that_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio.vtk", None)
 
-    with pytest.raises(MeshError, match=r"needs a package that is missing: .*meshio\.vtk"):
+    with pytest.raises(MeshError, match=r"needs the package meshio\.vtk, which is not installed"):
         load_mesh_bytes(ASCII_VTK, ".vtk")
 
 
@@ -226,7 +228,7 @@ def test_cells_follow_no_names_of_other_files(tmp_path, monkeypatch, keyword):
     for name in (tmp_path / "secret.inp", "secret.inp"):
         path.write_bytes(ABAQUS + f"{keyword}, INPUT={name}\n".encode())
         for load in (lambda: load_mesh(path), lambda: load_mesh_bytes(path.read_bytes(), ".inp")):
-            with pytest.raises(MeshError, match="it names another file, "):
+            with pytest.raises(MeshError, match="names another file, "):
                 load()
 
 

@@ -111,7 +111,7 @@ def test_load_mesh_bytes_without_a_suffix_goes_by_the_beginning(data):
     ("data", "fault"),
     [
         (b"1 2 3\n", "<stdin>: does not begin as any known format does; put it into a file"),
-        (b"PK\x03\x04", "<stdin>: is a zip archive, which is not opened"),
+        (b"PK\x03\x04", "<stdin>: is a zip archive, not a mesh; unpack it"),
         (b"", "<stdin>: is empty"),
     ],
 )
@@ -220,8 +220,8 @@ def test_load_mesh_refuses_impossible_paths(path):
         (".glb", b"# vtk DataFile Version 4.2\n", r"a VTK file \(\.vtk\)"),
         (".vtk", b"$MeshFormat\n4.1 0 8\n", r"a Gmsh file \(\.msh\)"),
         (".msh", b"<VTKFile type=", r"a VTU file \(\.vtu\)"),
-        (".stl", b"PK\x03\x04" + bytes(200), "zip archive, which is not opened"),
-        (".vtu", b"\x1f\x8b\x08" + bytes(200), "gzip archive, which is not opened"),
+        (".stl", b"PK\x03\x04" + bytes(200), "is a zip archive, not a mesh; unpack it"),
+        (".vtu", b"\x1f\x8b\x08" + bytes(200), "is a gzip archive, not a mesh; unpack it"),
         (".inp", b"ISO-10303-21;\n", "a STEP file"),
     ],
 )

@@ -94,7 +94,7 @@ def test_mesh_made_in_code_has_no_source():
         (TRIANGLE, np.zeros((0, 3), int), "triangles: none found"),
         (TRIANGLE, [0, 1, 2], r"triangles: has shape \(3,\), expected \(N, 3\)"),
         (TRIANGLE, [[0, 1]], r"triangles: has shape \(1, 2\)"),
-        (TRIANGLE, [[0, 1, 2], [0, 1]], r"triangles: not an array of shape \(N, 3\)"),
+        (TRIANGLE, [[0, 1, 2], [0, 1]], r"triangles: is not an array of numbers of shape \(N, 3\)"),
         ([], [[0, 1, 2]], "triangle 0: uses vertex [012] of 0"),
         ([[0, 0]] * 3, [[0, 1, 2]], r"vertices: has shape \(3, 2\)"),
         ([["a"] * 3] * 3, [[0, 1, 2]], "vertices: have type"),

@@ -29,7 +29,7 @@ _CUT_SHORT = "string or file could not be read to its end"
 
 
 def fenced(source: Source, library: str, read: Callable[[], Result]) -> Result:
-    """Return what `read` returns; whatever it raises becomes a MeshError with the library's words.
+    """Return what `read` returns; whatever it raises becomes a MeshError that quotes none of it.
 
     KeyboardInterrupt and the like pass. Output and warnings are swallowed; memory is bounded by
     the file's size where the system can do so.
@@ -52,14 +52,29 @@ def fenced(source: Source, library: str, read: Callable[[], Result]) -> Result:
         raise source.error(
             "claims more than the file can hold (out of memory)", "its counts are wrong"
         ) from fault
+    except _OtherFileError as fault:
+        raise source.error(f"names another file, '{fault}'", "copy that into it") from fault
+    except _EndsEarlyError as fault:
+        raise source.error("ends too early", "it was cut short") from fault
     except ImportError as fault:
-        raise source.error(f"needs a package that is missing: {fault}", "install it") from fault
-    except (Exception, SystemExit) as fault:
-        words = " ".join(f"{fault} {printed.getvalue()}".split())[:300]
-        kind = type(fault).__name__
+        name = fault.name or "that reads it"
         raise source.error(
-            f"{library} cannot read it: {kind}: {words}", "export it again or in another format"
+            f"needs the package {name}, which is not installed", f"pip install {name}"
         ) from fault
+    except (Exception, SystemExit) as fault:
+        # What a library says of it is written for its authors: `--debug` shows that.
+        raise source.error(
+            f"{library} cannot read it: it is not what a file of this format holds",
+            "export it again or in another format",
+        ) from fault
+
+
+class _EndsEarlyError(EOFError):
+    """A reader asks for more after the end of a file, again and again."""
+
+
+class _OtherFileError(PermissionError):
+    """A reader opens another file than the one that was given."""
 
 
 class _EndingBytes(io.BufferedReader):
@@ -99,7 +114,7 @@ def _counted(idle: int, data: str | bytes) -> int:
     if data:
         return 0
     if idle > _MOST_IDLE:
-        raise EOFError("the file ends too early")
+        raise _EndsEarlyError
     return idle + 1
 
 
@@ -119,7 +134,7 @@ def ending_files(package: str, only: Path) -> Iterator[None]:
 
     def open_only(path: str | Path, mode: str = "r") -> io.BufferedIOBase | io.TextIOBase:
         if Path(path) != only:
-            raise PermissionError(f"it names another file, '{path}': copy that into it")
+            raise _OtherFileError(str(path))
         return _ending_open(path, mode)
 
     modules = [module for name, module in sys.modules.items() if name.startswith(package)]

@@ -1,39 +1,64 @@
-"""What a file is, told by its first bytes: for streams without a name, and for wrong names."""
+"""What a file is, told by its first bytes: content counts before the name."""
 
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from obbcli.mesh.formats.stl import is_binary_stl
+from obbcli.mesh.formats.text import strip_mark
 
-_HEAD_BYTES = 1 << 16
+HEAD_BYTES = 1 << 16
 
-#: How files begin, in any case and after any white space; with the suffix they should have (None:
-#: not read) and what they are.
-_BEGINNINGS: tuple[tuple[bytes, str | None, str], ...] = (
+#: How files begin, in any case and after any white space; with the suffix they should have and
+#: what they are.
+_BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"ply\s", ".ply", "a PLY file"),
-    (rb"gltf", ".glb", "a GLB file"),
-    (rb"solid\b", ".stl", "an ASCII STL file"),
-    (rb"(ST)?C?N?4?n?OFF\b", ".off", "an OFF file"),
-    (rb"# vtk ", ".vtk", "a VTK file"),
+    (rb"gltf[\x01-\x03]\0\0\0", ".glb", "a GLB file"),
+    (rb"(ST)?C?N?4?n?OFF(\s|\d|\Z)", ".off", "an OFF file"),
+    (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
-    (rb"pk\x03\x04", None, "a zip archive, which is not opened"),
-    (rb"\x1f\x8b", None, "a gzip archive, which is not opened"),
-    (rb"\x89HDF", None, "an HDF5 file, which is not read"),
-    (rb"ISO-10303", None, "a STEP file, which is no mesh"),
-    (rb"(#[^\n]*\n|\s)*(v|vt|vn|o|g|s|mtllib|usemtl)[ \t]", ".obj", "an OBJ file"),
+    (rb"\{[^{}\[\]]*\"asset\"\s*:\s*\{", ".gltf", "a glTF file"),
 )
+#: A line of an ASCII STL beside its title.
+_FACETS = rb"(?im)^[ \t]*(facet|endsolid|end[ \t]+solid)\b"
+_OBJ_WORDS = frozenset(b"v vt vn o g s mtllib usemtl".split())
 
 
-def beginning(data: bytes) -> tuple[str | None, str] | None:
-    """Return suffix and description of the format that the bytes show, if any."""
+class Beginning(NamedTuple):
+    """Holds what a file looks like.
+
+    Args:
+        suffix: what its name should end with.
+        words: what it is, as errors and notes say it.
+        is_sure: whether nothing else begins like that.
+    """
+
+    suffix: str
+    words: str
+    is_sure: bool = True
+
+
+def beginning(data: bytes) -> Beginning | None:
+    """Return the format that the bytes show, if any."""
     # A binary STL may begin with any text: its length tells it.
     if is_binary_stl(data):
-        return ".stl", "a binary STL file"
-    head = data[:_HEAD_BYTES]
+        return Beginning(".stl", "a binary STL file")
+    head = strip_mark(data[:HEAD_BYTES]).lstrip()
     for pattern, suffix, words in _BEGINNINGS:
-        # Compiled here: few files are not what they should be.
-        if re.match(rb"\s*" + pattern, head, re.IGNORECASE):
-            return suffix, words
-    return None
+        # Compiled here: few files are looked at twice.
+        if re.match(pattern, head, re.IGNORECASE):
+            return Beginning(suffix, words)
+    if re.match(rb"solid\b", head, re.IGNORECASE) and re.search(_FACETS, head):
+        return Beginning(".stl", "an ASCII STL file")
+    return Beginning(".obj", "an OBJ file", is_sure=False) if _is_like_obj(head) else None
+
+
+def _is_like_obj(head: bytes) -> bool:
+    """Return whether the first line that says something begins as one of OBJ does."""
+    for line in head.splitlines():
+        words = line.split(None, 1)
+        if words and not words[0].startswith(b"#"):
+            return len(words) == 2 and words[0] in _OBJ_WORDS
+    return False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -19,8 +20,17 @@ _SHOWN = 40
 
 
 def strip_mark(data: bytes) -> bytes:
-    """Return `data` without the byte order mark that some editors put first."""
-    return data[len(_UTF8_MARK) :] if data.startswith(_UTF8_MARK) else data
+    """Return text without the byte order mark that some editors put first, UTF-16 as UTF-8.
+
+    What is marked as UTF-16 but is none stays as it is, and is no text of any format.
+    """
+    if data.startswith(_UTF8_MARK):
+        return data[len(_UTF8_MARK) :]
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        whole = len(data) - len(data) % 2  # the beginning of a file may end inside a letter
+        with suppress(UnicodeDecodeError):
+            return data[:whole].decode("utf-16").encode()
+    return data
 
 
 def number(source: Source, word: bytes, line: int) -> float:
