@@ -213,7 +213,11 @@ def test_load_mesh_refuses_impossible_paths(path):
     ("suffix", "data", "guess"),
     [
         (".stl", b"ply\nformat ascii 1.0\nend_header\n", r"a PLY file \(\.ply\)"),
-        (".stl", OBJ, "begins with 'solid'"),
+        (
+            ".stl",
+            OBJ,
+            "no STL: found 'v', expected 'solid'; the file looks like an OBJ",
+        ),
         (".ply", b"solid x\nendsolid x\n", r"an ASCII STL file \(\.stl\)"),
         (".obj", b"OFF\n3 1 0\n", r"an OFF file \(\.off\)"),
         (".off", b"glTF\2\0\0\0", r"a GLB file \(\.glb\)"),

@@ -39,6 +39,10 @@ _COORDINATES = [k for k, word in enumerate(_FACET) if word is None and k > 4]
 #: Begins with letters, which `re` looks for many times as fast as for line starts.
 _TITLE = rb"solid(?![^\s])[^\r\n]*"
 _STARTS_SOLID = rb"(?i)\s*solid\b"
+#: Lines that say nothing of the shape: comments, and the colours that some exporters write.
+_REMARK = rb"(?i)(?:(?<=[\r\n])|\A)[ \t]*(?:#|;|//|colou?r\b)[^\r\n]*"
+#: Closing words written as two.
+_CLOSING = rb"(?i)\bend[ \t]+(solid|loop|facet)\b"
 #: Bytes no text has; a header is padded with NULs more often than not.
 _BINARY_BYTES = rb"[\x00-\x08\x0e-\x1f\x7f]"
 
@@ -53,9 +57,14 @@ def read_stl(source: Source) -> MeshArrays:
     if is_binary_stl(data):
         return _read_binary(data)
     text = strip_mark(data)
-    if re.match(_STARTS_SOLID, text) and not re.search(_BINARY_BYTES, text[: 2 * HEADER_SIZE]):
+    if re.search(_BINARY_BYTES, text[: 2 * HEADER_SIZE]):
+        raise _not_binary(source)
+    if re.match(_STARTS_SOLID, text):
         return _read_ascii(source, text)
-    raise _not_binary(source)
+    plain = _without_remarks(text)
+    if re.match(_STARTS_SOLID, plain):
+        return _read_ascii(source, plain)
+    raise _no_solid(source, plain)
 
 
 def read_binary_file(path: Path) -> MeshArrays | None:
@@ -117,7 +126,8 @@ def _not_binary(source: Source) -> Exception:
     if size < HEADER_SIZE:
         return source.error(
             f"has {size} bytes; a binary STL has at least {HEADER_SIZE}, an ASCII STL begins with "
-            "'solid'"
+            "'solid'",
+            "export or download it again",
         )
     claimed = _claimed(source.data)
     wanted = HEADER_SIZE + RECORD.itemsize * claimed
@@ -130,11 +140,30 @@ def _not_binary(source: Source) -> Exception:
     )
 
 
+def _no_solid(source: Source, text: bytes) -> Exception:
+    """Return the error of text that is no STL, with the line: it is no truncated binary file."""
+    for line, word, _ in _words(text):
+        return source.error(
+            f"is text, but no STL: found '{shown(word)}', expected 'solid'",
+            "export it again, or give its name the suffix of its format",
+            at=str(line),
+        )
+    return source.error("holds comments alone, expected 'solid'", "export it again")
+
+
+def _without_remarks(text: bytes) -> bytes:
+    """Return text without comments and colours, closing words as one; lines keep their numbers."""
+    return re.sub(_CLOSING, rb"end\1", re.sub(_REMARK, b"", text))
+
+
 def _read_ascii(source: Source, text: bytes) -> MeshArrays:
     """Return the facets of all solids: by whole columns where all is regular, else word by word."""
     vertices = _read_regular(text)
     if vertices is None:
-        vertices = _read_words(source, text)
+        plain = _without_remarks(text)
+        vertices = None if plain == text else _read_regular(plain)
+        if vertices is None:
+            vertices = _read_words(source, plain)
     return vertices, _in_threes(len(vertices) // 3)
 
 

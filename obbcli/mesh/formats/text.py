@@ -65,6 +65,7 @@ def whole(source: Source, word: bytes, line: int, what: str) -> int:
 def shown(word: bytes) -> str:
     """Return a word as errors show it: of a long one, the beginning."""
     text = word[:_SHOWN].decode("latin-1")
+    text = "".join(letter if letter.isprintable() else "?" for letter in text)
     return text if len(word) <= _SHOWN else f"{text}..."
 
 
