@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from obbcli.answers.status import Inner, Status, is_contact
+from obbcli.answers.words import EvidenceWord, FeatureWord  # noqa: TC001  # kinds of fields are read
 
 if TYPE_CHECKING:
     from obbcli.answers.counts import QueryStats
@@ -53,7 +54,7 @@ class Contact:
     status: Status
     time: float | None = None
     time_bounds: tuple[float, float | None] | None = None
-    evidence: str | None = None
+    evidence: EvidenceWord | None = None
     point: Vector | None = None
     point_a: Vector | None = None
     point_b: Vector | None = None
@@ -62,7 +63,7 @@ class Contact:
     normal_b: Vector | None = None
     triangle_a: int | None = None
     triangle_b: int | None = None
-    feature: str | None = None
+    feature: FeatureWord | None = None
     distance: float | None = None
     contained: Inner | None = None
     approximate: bool = False

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from obbcli.kernels._core import (
     Contact,
+    ContactPlace,
     ContactQuery,
     ContainmentQuery,
     DistanceQuery,
@@ -20,7 +21,6 @@ from obbcli.kernels._core import (
     Screw,
     Split,
     StaticQuery,
-    SweepOptions,
     Tree,
     TreeBuilder,
     TreeError,
@@ -34,6 +34,7 @@ from obbcli.kernels._core import (
     primitive_first_contacts,
     primitive_intersects,
     sweep,
+    sweep_columns,
     swept_pairs,
     triangle_pairs,
 )
@@ -46,6 +47,7 @@ if not keeps_denormals():
 
 __all__ = [
     "Contact",
+    "ContactPlace",
     "ContactQuery",
     "ContainmentQuery",
     "DistanceQuery",
@@ -58,7 +60,6 @@ __all__ = [
     "Screw",
     "Split",
     "StaticQuery",
-    "SweepOptions",
     "Tree",
     "TreeBuilder",
     "TreeError",
@@ -71,6 +72,7 @@ __all__ = [
     "primitive_first_contacts",
     "primitive_intersects",
     "sweep",
+    "sweep_columns",
     "swept_pairs",
     "triangle_pairs",
 ]

@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from obbcli.answers.words import FEATURES
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
+    from obbcli.answers.words import FeatureWord
 
     Floats = NDArray[np.float64]
     Columns = Mapping[str, NDArray[Any]]
@@ -29,9 +33,8 @@ _AXES = (
     ("point", (0,)),
 )
 _KINDS = np.array([name for name, _ in _AXES])
-_PARTS = ("vertex", "edge", "face")
 _NORMALS = ("normal", "normal_a", "normal_b", "smooth_normal_a", "smooth_normal_b")
-_FEATURES = np.array([*(f"{a}-{b}" for a in _PARTS for b in _PARTS), ""])
+_FEATURES = np.array([word or "" for word in FEATURES])
 
 
 class SeparatingAxis(NamedTuple):
@@ -86,7 +89,7 @@ class PrimitiveContact:
     point: Floats
     separating_axis: SeparatingAxis | None
     normal: Floats | None
-    feature: str | None
+    feature: FeatureWord | None
     normal_a: Floats | None
     normal_b: Floats | None
     smooth_normal_a: Floats | None
@@ -140,7 +143,7 @@ class PrimitiveContacts:
 
 def contact_at(columns: Columns, k: int) -> PrimitiveContact:
     """Return the k-th contact of the kernel's columns."""
-    kind, first, second, side, part_a, part_b, ends = columns["codes"][k].tolist()
+    kind, first, second, side, feature, ends = columns["codes"][k].tolist()
     name, places = _AXES[kind]
     indices = (first, second)
     axis = SeparatingAxis(name, tuple(indices[i] for i in places), side) if kind else None
@@ -151,7 +154,7 @@ def contact_at(columns: Columns, k: int) -> PrimitiveContact:
         ends=bool(ends),
         point=columns["point"][k],
         separating_axis=axis,
-        feature=f"{_PARTS[part_a]}-{_PARTS[part_b]}" if kind else None,
+        feature=FEATURES[feature],
         **{name: v if (v := columns[name][k]).any() else None for name in _NORMALS},
     )
 
@@ -159,11 +162,10 @@ def contact_at(columns: Columns, k: int) -> PrimitiveContact:
 def contacts_of(columns: Columns) -> PrimitiveContacts:
     """Return the kernel's columns as contacts."""
     codes = columns["codes"]
-    features = np.where(codes[:, 0] > 0, 3 * codes[:, 4] + codes[:, 5], len(_FEATURES) - 1)
     derived = {
-        "ends": codes[:, 6].astype(np.bool_),
+        "ends": codes[:, 5].astype(np.bool_),
         "axis_kind": _KINDS[codes[:, 0]],
-        "feature": _FEATURES[features],
+        "feature": _FEATURES[codes[:, 4]],
     }
     for column in derived.values():
         column.setflags(write=False)

@@ -88,22 +88,24 @@ def duration_of(duration: float | None, bodies: Sequence[Body]) -> float:
     return seconds
 
 
-def box_limits(accuracy: Accuracy) -> tuple[bool, int, int]:
-    """Return how boxes stand for triangles: in leaves, and from which depth on in either tree."""
-    a, b = accuracy.max_depth_a, accuracy.max_depth_b
-    return (
-        accuracy.leaves == "boxes",
-        _NO_DEPTH_LIMIT if a is None else min(a, _NO_DEPTH_LIMIT),
-        _NO_DEPTH_LIMIT if b is None else min(b, _NO_DEPTH_LIMIT),
-    )
-
-
 def limits_of(accuracy: Accuracy) -> kernels.Limits:
-    """Return where boxes stand for triangles and when to stop, as the kernels see it."""
-    timeout = accuracy.timeout
-    seconds = math.inf if timeout is None else timeout
-    pops = min(accuracy.max_iterations, NO_LIMIT)
-    return kernels.Limits(*box_limits(accuracy), pops, seconds)
+    """Return how far a certified question is pursued, as the kernels see it.
+
+    What is None is left as the kernels have it: no limit, and no tolerance.
+    """
+    limits = kernels.Limits()
+    limits.boxes_for_leaves = accuracy.leaves == "boxes"
+    limits.clearance = accuracy.clearance
+    limits.max_pops = min(accuracy.max_iterations, NO_LIMIT)
+    if accuracy.max_depth_a is not None:
+        limits.max_depth_a = min(accuracy.max_depth_a, _NO_DEPTH_LIMIT)
+    if accuracy.max_depth_b is not None:
+        limits.max_depth_b = min(accuracy.max_depth_b, _NO_DEPTH_LIMIT)
+    if accuracy.distance_tolerance is not None:
+        limits.distance_tolerance = accuracy.distance_tolerance
+    if accuracy.timeout is not None:
+        limits.seconds = accuracy.timeout
+    return limits
 
 
 def placed_of(body: Body, tree: ObbTree) -> kernels.Placed:
@@ -174,8 +176,6 @@ def moving_query(
         TreeFileError: a tree file is damaged.
     """
     (a, b), (tree_a, tree_b) = bodies, trees
-    coarse, depth_a, depth_b = box_limits(accuracy)
-    nearness = accuracy.distance_tolerance
     screw_a, screw_b = _screw(a, tree_a), _screw(b, tree_b)
     try:
         return kernels.ContactQuery(
@@ -185,13 +185,9 @@ def moving_query(
             tree_b.kernel,
             b.pose.kernel,
             screw_b,
+            limits_of(accuracy),
             duration=duration,
             time_tolerance=time_tolerance(accuracy, duration),
-            distance_tolerance=-1.0 if nearness is None else nearness,
-            clearance=accuracy.clearance,
-            boxes_for_leaves=coarse,
-            max_depth_a=depth_a,
-            max_depth_b=depth_b,
             any_contact=any_contact,
             each_pair=each_pair,
         )

@@ -9,6 +9,7 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.collision import Collision
 from obbcli.answers.contact import Contact, FirstContact
 from obbcli.answers.status import Status
+from obbcli.answers.words import EVIDENCES, FEATURES
 from obbcli.questions.border import POPS_A_SLICE, limits_of, refused, trees_of
 
 if TYPE_CHECKING:
@@ -18,20 +19,13 @@ if TYPE_CHECKING:
     from obbcli.motion.body import Body
     from obbcli.questions.border import Trees
 
-_EVIDENCE = {
-    kernels.Evidence.INTERSECTING: "intersecting",
-    kernels.Evidence.WITHIN_TOLERANCE: "within_tolerance",
-    kernels.Evidence.BOXES: "boxes",
-}
 _EXACT_LIMITS = limits_of(Accuracy())
 _SEPARATED = Contact(status=Status.SEPARATED)
-_FEATURES = ("vertex", "edge", "face")
 
 
 def contact_of(query: kernels.ContactQuery, found: kernels.Contact, clearance: float) -> Contact:
     """Return what a moving question found; not for triangles that meet at t = 0."""
     place = query.place(found)
-    point_a, point_b, normal, normal_a, normal_b = map(_vector, place[:5])
     by_boxes = found.evidence is kernels.Evidence.BOXES
     # Whether surfaces themselves touch at t = 0 was decided exactly before.
     is_at_start = found.high == 0 and (by_boxes or clearance > 0)
@@ -39,16 +33,16 @@ def contact_of(query: kernels.ContactQuery, found: kernels.Contact, clearance: f
         status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
         time=found.low,
         time_bounds=(found.low, None if by_boxes else found.high),
-        evidence=_EVIDENCE[found.evidence],
-        point=_vector([0.5 * p + 0.5 * q for p, q in zip(*place[:2], strict=True)]),
-        point_a=point_a,
-        point_b=point_b,
-        normal=normal,
-        normal_a=normal_a,
-        normal_b=normal_b,
+        evidence=EVIDENCES[found.evidence.value],
+        point=place.point,
+        point_a=place.point_a,
+        point_b=place.point_b,
+        normal=place.normal,
+        normal_a=place.normal_a,
+        normal_b=place.normal_b,
         triangle_a=None if by_boxes else found.triangle_a,
         triangle_b=None if by_boxes else found.triangle_b,
-        feature="box" if by_boxes else f"{_FEATURES[place[5]]}-{_FEATURES[place[6]]}",
+        feature=FEATURES[place.feature],
         distance=None if by_boxes else found.distance,
         approximate=by_boxes,
         error_bound=found.error_bound,

@@ -11,8 +11,8 @@ from obbcli.answers.distance import Distance
 from obbcli.motion.body import as_body
 from obbcli.questions.border import (
     POPS_A_SLICE,
-    box_limits,
     damaged,
+    limits_of,
     out_of_range,
     stats_of,
     trees_of,
@@ -102,8 +102,7 @@ def _query(trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy) -> kerne
         a.pose.kernel,
         tree_b.kernel,
         b.pose.kernel,
-        *box_limits(accuracy),
-        accuracy.distance_tolerance or 0.0,
+        limits_of(accuracy),
     )
 
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from obbcli import kernels
 from obbcli.answers.status import Status
+from obbcli.answers.words import EVIDENCES, FEATURES
 
 if TYPE_CHECKING:
     from obbcli.answers.contact import Contact, FirstContact
@@ -17,32 +19,20 @@ if TYPE_CHECKING:
 _VECTORS = ("point", "point_a", "point_b", "normal", "normal_a", "normal_b")
 _COUNTS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
 
-RAW = np.dtype(
-    [
-        ("time_lo", "f8"),
-        ("time_hi", "f8"),
-        *((name, "f8", 3) for name in _VECTORS),
-        ("distance", "f8"),
-        ("error_bound", "f8"),
-        ("triangle_a", "i8"),
-        ("triangle_b", "i8"),
-        *((name, "u8") for name in _COUNTS),
-        ("status", "u1"),
-        ("evidence", "u1"),
-        ("feature", "u1"),
-        ("approximate", "u1"),
-        ("padding", "V4"),
-    ]
-)
+
+def _raw_rows() -> np.dtype[np.void]:
+    columns, size = kernels.sweep_columns()
+    names, formats, offsets = zip(*columns, strict=True)
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+
+
+RAW = _raw_rows()
 """`SweepAnswer` of the kernels: NaN and -1 for what does not apply, codes for words."""
 
 # By their codes there. After them come rows that are refused, and those of which it is left to
 # Python to say where triangles meet.
 STATUSES = (Status.SEPARATED, Status.CONTACT, Status.OVERLAP_AT_START, Status.UNRESOLVED)
 REFUSED, TRIANGLES_AT_START = 4, 5
-_EVIDENCES = ("", "intersecting", "within_tolerance", "boxes", "sampled")
-_DIMENSIONS = ("vertex", "edge", "face")
-_FEATURES = ("", *(f"{a}-{b}" for a in _DIMENSIONS for b in _DIMENSIONS), "box")
 
 ROW = np.dtype(
     [
@@ -73,10 +63,10 @@ def as_rows(raw: Answers) -> Answers:
     for name in (*_SHARED, *_COUNTS):
         rows[name] = raw[name]
     rows["time"] = raw["time_lo"]
-    rows["approximate"] = raw["approximate"] != 0
+    rows["approximate"] = raw["approximate"]
     rows["status"] = np.array([status.value for status in STATUSES])[raw["status"]]
-    rows["evidence"] = np.array(_EVIDENCES)[raw["evidence"]]
-    rows["feature"] = np.array(_FEATURES)[raw["feature"]]
+    rows["evidence"] = np.array([word or "" for word in EVIDENCES])[raw["evidence"]]
+    rows["feature"] = np.array([word or "" for word in FEATURES])[raw["feature"]]
     return rows
 
 
@@ -94,8 +84,8 @@ def write_contact(raw: Any, contact: Contact) -> None:
     raw["error_bound"] = contact.error_bound
     raw["approximate"] = contact.approximate
     raw["status"] = STATUSES.index(contact.status)
-    raw["evidence"] = _EVIDENCES.index(contact.evidence or "")
-    raw["feature"] = _FEATURES.index(contact.feature or "")
+    raw["evidence"] = EVIDENCES.index(contact.evidence)
+    raw["feature"] = FEATURES.index(contact.feature)
 
 
 def write_answer(raw: Any, answer: FirstContact) -> None:
@@ -110,7 +100,7 @@ def as_results(raw: Answers) -> list[dict[str, Any]]:
 
     Of a refused row there is nothing to say: {}.
     """
-    names = [name for name in RAW.names or () if name != "padding"]
+    names = RAW.names or ()
     columns = [raw[name].tolist() for name in names]
     return [_result(dict(zip(names, values, strict=True))) for values in zip(*columns, strict=True)]
 
@@ -124,17 +114,17 @@ def _result(values: dict[str, Any]) -> dict[str, Any]:
         "status": status.value,
         "time": low,
         "time_bounds": None if low is None else [low, high],
-        "evidence": _EVIDENCES[values["evidence"]] or None,
+        "evidence": EVIDENCES[values["evidence"]],
     }
     for name in _VECTORS:
         vector = values[name]
         result[name] = None if math.isnan(vector[0]) else vector
     for name in ("triangle_a", "triangle_b"):
         result[name] = None if values[name] < 0 else values[name]
-    result["feature"] = _FEATURES[values["feature"]] or None
+    result["feature"] = FEATURES[values["feature"]]
     result["distance"] = _or_none(values["distance"])
     result["contained"] = None
-    result["approximate"] = bool(values["approximate"])
+    result["approximate"] = values["approximate"]
     result["error_bound"] = values["error_bound"]
     result["stats"] = {name: values[name] for name in _COUNTS}
     return result

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from obbcli import kernels
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.motion.body import Body
-from obbcli.questions.border import NO_LIMIT, box_limits, out_of_range, refused, time_tolerance
+from obbcli.questions.border import limits_of, out_of_range, refused, time_tolerance
 from obbcli.questions.describe import contact_at_start
 from obbcli.questions.first_contact import first_contact
 from obbcli.sweeps.answer_rows import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
@@ -77,10 +76,9 @@ def answer_batch(trees: Trees, batch: Batch, accuracy: Accuracy, threads: int) -
     questions[:, 9:18] = batch.motions_b
     questions[:, 18] = batch.durations
     questions[:, 19] = _time_tolerances(accuracy, batch.durations)
-    options = _options(accuracy)
     try:
         found, faults = kernels.sweep(
-            trees[0].kernel, trees[1].kernel, placements, questions, options, threads
+            trees[0].kernel, trees[1].kernel, placements, questions, limits_of(accuracy), threads
         )
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
@@ -116,20 +114,6 @@ def _time_tolerances(accuracy: Accuracy, durations: Floats) -> Floats:
     """Return the width asked of each bracket, s."""
     asked = accuracy.time_tolerance
     return durations * time_tolerance(accuracy, 1.0) if asked is None else np.full(1, asked)
-
-
-def _options(accuracy: Accuracy) -> kernels.SweepOptions:
-    coarse, depth_a, depth_b = box_limits(accuracy)
-    nearness, timeout = accuracy.distance_tolerance, accuracy.timeout
-    return kernels.SweepOptions(
-        distance_tolerance=-1.0 if nearness is None else nearness,
-        clearance=accuracy.clearance,
-        boxes_for_leaves=coarse,
-        max_depth_a=depth_a,
-        max_depth_b=depth_b,
-        max_pops=min(accuracy.max_iterations, NO_LIMIT),
-        seconds=math.inf if timeout is None else timeout,
-    )
 
 
 def _say_where_triangles_meet(trees: Trees, poses: Sequence[Poses], answers: Answers) -> None:

@@ -1,9 +1,9 @@
 // Two small bodies in any motion: the search ends at its limit, and nothing that it proves apart
 // crosses at a time in between.
+#include "build/tree_build.hpp"
 #include "bytes.hpp"
 #include "in_motion/contact_sweep.hpp"
 #include "primitives/predicates.hpp"
-#include "build/tree_build.hpp"
 
 #include <array>
 #include <memory>
@@ -118,8 +118,8 @@ bool surely_cross(const Body& a, const Body& b, long double time) {
     }
     for (const Body* body : {&a, &b}) {
         const obb::Screw& s = body->screw;
-        reach = std::max<long double>(
-            reach, obb::norm_inf(s.pivot) + time * obb::norm_inf(s.linear_velocity));
+        reach = std::max<long double>(reach, obb::norm_inf(s.pivot) +
+                                                 time * obb::norm_inf(s.linear_velocity));
         turned += time * obb::norm_1(s.angular_velocity);
     }
     const long double margin = 1e-16L * turned * reach * reach * reach;
@@ -136,15 +136,14 @@ bool surely_cross(const Body& a, const Body& b, long double time) {
     return false;
 }
 
-obb::SweepAnswer ask(const Body& a, const Body& b, double duration,
-                     const obb::SweepOptions& options) {
+obb::SweepAnswer ask(const Body& a, const Body& b, double duration, const obb::Limits& limits) {
     const obb::Placement placement{a.pose, b.pose};
     const obb::SweepQuestion question{a.screw, b.screw, duration, 1e-9 * duration};
     const obb::TreeView tree_a = a.tree->view(), tree_b = b.tree->view();
-    obb::SweepRow row(tree_a, tree_b, placement, question, options, nullptr);
+    obb::SweepRow row(tree_a, tree_b, placement, question, limits, nullptr);
     while (!row.advance()) {
     }
-    require(row.answer().counts.pops <= options.max_pops, "a question ends at its limit");
+    require(row.answer().counts.pops <= limits.max_pops, "a question ends at its limit");
     return row.answer();
 }
 
@@ -217,16 +216,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto kind = bytes.take<std::uint8_t>();
     const double duration =
         std::fabs((kind & 4) != 0 ? bytes.number(false) : bytes.moderate() / 16);
-    obb::SweepOptions options{-1, 0, (kind & 8) != 0, ~0U, ~0U, kMostPops, 1e9};
-    options.clearance = (kind & 16) != 0 ? std::fabs(bytes.moderate()) / 16 : 0;
-    options.distance_tolerance = (kind & 32) != 0 ? std::fabs(bytes.moderate()) / 16 : -1;
-    options.max_depth_a = (kind & 64) != 0 ? bytes.below(4) : ~0U;
+    obb::Limits limits{.max_pops = kMostPops};
+    limits.boxes.boxes_for_leaves = (kind & 8) != 0;
+    limits.clearance = (kind & 16) != 0 ? std::fabs(bytes.moderate()) / 16 : 0;
+    limits.distance_tolerance = (kind & 32) != 0 ? std::fabs(bytes.moderate()) / 16 : -1;
+    limits.boxes.max_depth_a = (kind & 64) != 0 ? bytes.below(4) : ~0U;
     const Body a(bytes, kind % 4), b(bytes, kind % 4);
     try {
-        const obb::SweepAnswer answer = ask(a, b, duration, options);
+        const obb::SweepAnswer answer = ask(a, b, duration, limits);
         check_answer(a, b, duration, answer);
-        std::swap(options.max_depth_a, options.max_depth_b);
-        const obb::SweepAnswer swapped = ask(b, a, duration, options);
+        std::swap(limits.boxes.max_depth_a, limits.boxes.max_depth_b);
+        const obb::SweepAnswer swapped = ask(b, a, duration, limits);
         require(!(is_proven(answer) && swapped.status == obb::SweepStatus::kSeparated) &&
                     !(is_proven(swapped) && answer.status == obb::SweepStatus::kSeparated),
                 "nobody meets whom the swapped question proves apart");

@@ -1,11 +1,11 @@
 // The data of a tree file as an attacker may give them: with checksums that fit, and damaged under
 // checksums of the undamaged. Bytes: see `take_file`; `seeds.py` writes them from real files.
+#include "at_rest/static_query.hpp"
 #include "bytes.hpp"
+#include "distance/distance_query.hpp"
 #include "in_motion/contact_sweep.hpp"
 #include "tree/crc32.hpp"
-#include "distance/distance_query.hpp"
 #include "tree/file_tree.hpp"
-#include "at_rest/static_query.hpp"
 #include "tree/tree_check.hpp"
 
 #include <algorithm>
@@ -112,8 +112,8 @@ Answer ask(const File& file, std::span<const std::uint8_t> data,
         } else {
             const obb::Placement placement{{}, file.pose};
             const obb::SweepQuestion asked{{}, file.screw, 1, 1e-9};
-            const obb::SweepOptions options{-1, 0, false, ~0U, ~0U, kMostPops, 1e9};
-            obb::SweepRow row(view, view, placement, asked, options, nullptr);
+            const obb::Limits limits{.max_pops = kMostPops};
+            obb::SweepRow row(view, view, placement, asked, limits, nullptr);
             while (!row.advance()) {
             }
             const obb::SweepAnswer& found = row.answer();

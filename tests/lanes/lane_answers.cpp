@@ -1,12 +1,12 @@
 // Prints all bits of answers and counts, to be compared between kernels compiled for registers of
 // one width and of another.
-#include "in_motion/contact_query.hpp"
-#include "tree/crc32.hpp"
-#include "distance/distance_query.hpp"
-#include "shapes/lanes.hpp"
-#include "numbers/registers.hpp"
 #include "at_rest/static_query.hpp"
 #include "build/tree_build.hpp"
+#include "distance/distance_query.hpp"
+#include "in_motion/contact_query.hpp"
+#include "numbers/registers.hpp"
+#include "shapes/lanes.hpp"
+#include "tree/crc32.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -139,7 +139,7 @@ void ask_moving(const obb::TreeView& a, const obb::TreeView& b, obb::Pose at, do
     here.angular_velocity = index % 3 > 0 ? turns * random.point() : obb::Vec3{0, 0, 0};
     there.angular_velocity = index % 3 > 1 ? turns * random.point() : obb::Vec3{0, 0, 0};
     obb::ContactQueryOptions options{.duration = 2, .time_tolerance = 1e-7};
-    options.clearance = index % 5 == 4 ? 0.01 * size : 0;
+    options.limits.clearance = index % 5 == 4 ? 0.01 * size : 0;
     obb::ContactQuery query(a, {}, here, b, at, there, options);
     while (query.counts().pops < kMostPops && !query.advance(kMostPops - query.counts().pops)) {
     }

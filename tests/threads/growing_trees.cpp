@@ -1,14 +1,14 @@
 // Questions from several threads to trees that grow, or are read, as they are asked, for the thread
 // sanitizer: every answer must be that of one thread and whole trees.
-#include "in_motion/contact_query.hpp"
-#include "in_motion/contact_sweep.hpp"
 #include "at_rest/containment_query.hpp"
-#include "tree/crc32.hpp"
-#include "distance/distance_query.hpp"
-#include "tree/file_tree.hpp"
-#include "work/parallel.hpp"
 #include "at_rest/static_query.hpp"
 #include "build/tree_build.hpp"
+#include "distance/distance_query.hpp"
+#include "in_motion/contact_query.hpp"
+#include "in_motion/contact_sweep.hpp"
+#include "tree/crc32.hpp"
+#include "tree/file_tree.hpp"
+#include "work/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,8 +79,8 @@ obb::SweepAnswer meet(const obb::TreeView& a, const obb::TreeView& b, std::size_
     const double side = 0.4 * static_cast<double>(index);
     const obb::SweepQuestion question{
         {}, {{-4, side, 0}, {1, 2, 0}, placement.b.translation}, 1, 0};
-    const obb::SweepOptions options{-1, 0, false, ~0U, ~0U, ~0ULL, 1e9};
-    obb::SweepRow row(a, b, placement, question, options, nullptr);
+    const obb::Limits limits;
+    obb::SweepRow row(a, b, placement, question, limits, nullptr);
     while (!row.advance()) {
     }
     obb::SweepAnswer answer = row.answer();

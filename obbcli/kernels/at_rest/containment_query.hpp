@@ -29,7 +29,7 @@ class ContainmentQuery {
 
     // The number of the first point inside, of those asked about so far.
     [[nodiscard]] std::optional<std::size_t> inside() const { return inside_; }
-    [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
+    [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
     void begin_point();
@@ -45,7 +45,7 @@ class ContainmentQuery {
     int exponent_ = 0;           // of that unit
     std::vector<NodeRef> stack_; // nodes that the present ray may meet; a leaf's triangles to come
     std::optional<std::size_t> inside_;
-    StaticQueryCounts counts_;
+    WalkCounts counts_;
 };
 
 } // namespace obb

@@ -35,7 +35,7 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
 bool StaticQuery::is_open(const PosedTree& body, const NodeRef& ref,
                           std::uint32_t max_depth) const {
     return !ref.is_triangle() && ref.depth < max_depth &&
-           !(options_.boxes_for_leaves && TreeView::is_leaf(body.tree().node(ref)));
+           !(options_.boxes.boxes_for_leaves && TreeView::is_leaf(body.tree().node(ref)));
 }
 
 // The largest half extent, in the frame's unit; nothing for triangles.
@@ -65,8 +65,8 @@ void StaticQuery::visit() {
         meet_all(pair);
         return;
     }
-    const bool open_a = is_open(a_, pair.a, options_.max_depth_a);
-    const bool open_b = is_open(b_, pair.b, options_.max_depth_b);
+    const bool open_a = is_open(a_, pair.a, options_.boxes.max_depth_a);
+    const bool open_b = is_open(b_, pair.b, options_.boxes.max_depth_b);
     if (!open_a && !open_b) {
         stack_.pop_back();
         meet(pair);
@@ -260,10 +260,7 @@ void StaticQuery::join(std::span<StaticQuery> parts) {
         // No pair is held twice for longer than that takes.
         const std::vector<TrianglePair> found = part.take_pairs();
         pairs_.insert(pairs_.end(), found.begin(), found.end());
-        counts_.box_tests += part.counts_.box_tests;
-        counts_.triangle_tests += part.counts_.triangle_tests;
-        counts_.exact_triangle_tests += part.counts_.exact_triangle_tests;
-        counts_.pops += part.counts_.pops;
+        counts_ += part.counts_;
     }
     finish();
 }

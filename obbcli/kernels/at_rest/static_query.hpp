@@ -1,6 +1,7 @@
 // Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
 #pragma once
 
+#include "descent/limits.hpp"
 #include "descent/placed_boxes.hpp"
 #include "descent/posed_tree.hpp"
 #include "primitives/predicates.hpp"
@@ -17,11 +18,7 @@ namespace obb {
 struct StaticQueryOptions {
     // Find every intersecting pair of triangles instead of stopping at the first contact.
     bool all_pairs = false;
-    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
-    bool boxes_for_leaves = false;
-    // Nodes this deep stand for what they hold; the root's depth is 0.
-    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    BoxLimits boxes{};
     // Stop after so many pairs.
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
 };
@@ -29,13 +26,6 @@ struct StaticQueryOptions {
 struct TrianglePair {
     std::int64_t a, b;
     friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
-};
-
-struct StaticQueryCounts {
-    std::uint64_t box_tests = 0;
-    std::uint64_t triangle_tests = 0;
-    std::uint64_t exact_triangle_tests = 0;
-    std::uint64_t pops = 0;
 };
 
 // The query as an object: advanced by so many pops at a time, so that callers can look at the clock
@@ -66,7 +56,7 @@ class StaticQuery {
     [[nodiscard]] bool is_contact() const { return is_by_boxes_ || !pairs_.empty(); }
     // Bounds how far apart the surfaces can be where boxes met, mesh units; 0 elsewhere.
     [[nodiscard]] double error_bound() const { return error_bound_; }
-    [[nodiscard]] const StaticQueryCounts& counts() const { return counts_; }
+    [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
     struct Pair {
@@ -108,7 +98,7 @@ class StaticQuery {
     bool is_by_boxes_ = false;
     bool is_finished_ = false;
     double error_bound_ = 0;
-    StaticQueryCounts counts_;
+    WalkCounts counts_;
 };
 
 } // namespace obb

@@ -46,9 +46,8 @@ void StaticQuery::meet(const Pair& pair) {
 // box may stand for triangles.
 bool StaticQuery::tests_crowds(const StaticQueryOptions& options) {
     constexpr StaticQueryOptions kNoLimits;
-    return options.all_pairs && options.limit == kNoLimits.limit && !options.boxes_for_leaves &&
-           options.max_depth_a == kNoLimits.max_depth_a &&
-           options.max_depth_b == kNoLimits.max_depth_b;
+    return options.all_pairs && options.limit == kNoLimits.limit &&
+           options.boxes == kNoLimits.boxes;
 }
 
 bool StaticQuery::is_crowd(const Pair& pair) const {

@@ -1,4 +1,5 @@
 // Questions about moving bodies across the border.
+#include "bindings/contact_place.hpp"
 #include "bindings/module.hpp"
 
 #include "in_motion/contact_query.hpp"
@@ -19,16 +20,9 @@ namespace {
 using Triple = std::array<double, 3>;
 
 obb::Vec3 vec(const Triple& v) { return {v[0], v[1], v[2]}; }
-Triple triple(obb::Vec3 v) { return {v.x, v.y, v.z}; }
 
-// point on A, point on B, normal, normal of A, normal of B, dimensions of the features
-using Place = std::tuple<Triple, Triple, Triple, Triple, Triple, int, int>;
-
-Place place_of(obb::ContactQuery& query, const obb::Contact& contact) {
-    const obb::ContactPlace p = query.place(contact);
-    return {triple(p.point_a),  triple(p.point_b), triple(p.normal), triple(p.normal_a),
-            triple(p.normal_b), p.dimension_a,     p.dimension_b};
-}
+std::tuple<double, double, double> as_python(obb::Vec3 v) { return {v.x, v.y, v.z}; }
+int as_python(obb::FeatureCode code) { return code; }
 
 } // namespace
 
@@ -61,23 +55,25 @@ void bind_contact_query(nb::module_& m) {
         .def_ro("distance", &obb::Contact::distance)
         .def_ro("error_bound", &obb::Contact::error_bound);
 
+    nb::class_<obb::ContactPlace> place(m, "ContactPlace");
+    each_place_field([&place](const char* name, auto member) {
+        place.def_prop_ro(name,
+                          [member](const obb::ContactPlace& p) { return as_python(p.*member); });
+    });
+
     nb::class_<obb::ContactQuery>(m, "ContactQuery")
         .def(
             "__init__",
             [](obb::ContactQuery* self, const Tree& a, const obb::Pose& pose_a,
                const obb::Screw& screw_a, const Tree& b, const obb::Pose& pose_b,
-               const obb::Screw& screw_b, double duration, double time_tolerance,
-               double distance_tolerance, double clearance, bool boxes_for_leaves,
-               std::uint32_t max_depth_a, std::uint32_t max_depth_b, bool any_contact,
-               bool each_pair) {
-                new (self) obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
-                                             {duration, time_tolerance, distance_tolerance,
-                                              clearance, boxes_for_leaves, max_depth_a, max_depth_b,
-                                              any_contact, each_pair});
+               const obb::Screw& screw_b, const obb::Limits& limits, double duration,
+               double time_tolerance, bool any_contact, bool each_pair) {
+                new (self)
+                    obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
+                                      {duration, time_tolerance, limits, any_contact, each_pair});
             },
-            "a"_a, "pose_a"_a, "screw_a"_a, "b"_a, "pose_b"_a, "screw_b"_a, nb::kw_only(),
-            "duration"_a, "time_tolerance"_a, "distance_tolerance"_a, "clearance"_a,
-            "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "any_contact"_a, "each_pair"_a,
+            "a"_a, "pose_a"_a, "screw_a"_a, "b"_a, "pose_b"_a, "screw_b"_a, "limits"_a,
+            nb::kw_only(), "duration"_a, "time_tolerance"_a, "any_contact"_a, "each_pair"_a,
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
         .def("advance", &obb::ContactQuery::advance, "max_pops"_a,
              "until"_a = std::numeric_limits<double>::infinity(),
@@ -86,9 +82,9 @@ void bind_contact_query(nb::module_& m) {
         .def_prop_ro("has_given_up", &obb::ContactQuery::has_given_up)
         .def("contact", &obb::ContactQuery::contact)
         .def("take", &obb::ContactQuery::take)
-        .def("place", &place_of)
-        .def("counts", [](const obb::ContactQuery& q) {
-            const obb::ContactQueryCounts& c = q.counts();
-            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
-        });
+        .def(
+            "place",
+            [](obb::ContactQuery& q, const obb::Contact& contact) { return q.place(contact); },
+            "contact"_a)
+        .def("counts", [](const obb::ContactQuery& q) { return counts_of(q.counts()); });
 }

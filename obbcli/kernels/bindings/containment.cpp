@@ -42,8 +42,5 @@ void bind_containment(nb::module_& m) {
         .def("advance", &obb::ContainmentQuery::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
         .def_prop_ro("inside", &obb::ContainmentQuery::inside)
-        .def("counts", [](const obb::ContainmentQuery& q) {
-            const obb::StaticQueryCounts& c = q.counts();
-            return std::tuple{c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
-        });
+        .def("counts", [](const obb::ContainmentQuery& q) { return counts_of(q.counts()); });
 }

@@ -19,6 +19,7 @@ NB_MODULE(_core, m) {
     nb::set_leak_warnings(false); // what a caller still holds at exit is no leak
     nb::exception<obb::TreeError>(m, "TreeError", PyExc_RuntimeError);
     m.def("keeps_denormals", &keeps_denormals);
+    bind_limits(m);
     bind_hull(m);
     bind_tree(m);
     bind_file_tree(m);

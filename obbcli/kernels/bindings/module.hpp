@@ -1,11 +1,13 @@
 // What the bindings share: arrays across the border, and the trees that keep theirs alive.
 #pragma once
 
+#include "descent/limits.hpp"
 #include "shapes/pose.hpp"
 #include "tree/tree.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +15,7 @@
 #include <initializer_list>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -58,6 +61,14 @@ template <typename Array, typename Record>
 Array seen(std::span<const Record> records, std::initializer_list<std::size_t> shape,
            nb::handle owner) {
     return Array(records.data(), shape, owner);
+}
+
+// Counters as Python reads them, in the order of `Counts` in counts.py: one call for all, as
+// reading them one by one would cost more than many a query.
+using Counts = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
+
+inline Counts counts_of(const obb::WalkCounts& c) {
+    return {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
 }
 
 // Arrays of a tree, kept alive, and the view on them that the kernels use.
@@ -162,6 +173,7 @@ void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);
 void bind_file_tree(nb::module_& m);
 void bind_hull(nb::module_& m);
+void bind_limits(nb::module_& m);
 void bind_primitives(nb::module_& m);
 void bind_static_query(nb::module_& m);
 void bind_swept_pairs(nb::module_& m);

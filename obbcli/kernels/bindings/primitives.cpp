@@ -80,18 +80,21 @@ nb::object column(const std::vector<obb::PairContact>& contacts, const Get& get)
     }
 }
 
-// Kind, indices and side of the axis, dimensions of the features, whether contact ends.
+// Kind, indices and side of the axis, the features that meet, whether contact ends.
 nb::object codes(const std::vector<obb::PairContact>& contacts) {
-    using Codes = std::array<std::int8_t, 7>;
+    using Codes = std::array<std::int8_t, 6>;
     const auto code = [](auto value) { return static_cast<std::int8_t>(value); };
     std::vector<Codes> values;
     for (const obb::PairContact& contact : contacts) {
         const obb::Touch& t = contact.touch;
-        values.push_back({code(t.axis.kind), code(t.axis.a), code(t.axis.b), t.side,
-                          code(t.feature_a.dimension), code(t.feature_b.dimension),
+        const obb::FeatureCode feature =
+            t.axis.kind == obb::AxisKind::kNone
+                ? obb::kNoFeature
+                : obb::feature_code(t.feature_a.dimension, t.feature_b.dimension);
+        values.push_back({code(t.axis.kind), code(t.axis.a), code(t.axis.b), t.side, code(feature),
                           code(contact.ends)});
     }
-    return nb::cast(owned<Owned<std::int8_t, -1, 7>>(std::move(values), {contacts.size(), 7}));
+    return nb::cast(owned<Owned<std::int8_t, -1, 6>>(std::move(values), {contacts.size(), 6}));
 }
 
 nb::dict first_contacts(const Shapes& a, const Shapes& b, const Rows<double, 3>& velocity_a,

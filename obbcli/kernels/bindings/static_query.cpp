@@ -37,17 +37,7 @@ void init_pose(
     }
 }
 
-// Where boxes stand for triangles, and how long to go on.
-struct Limits {
-    bool boxes_for_leaves;
-    std::uint32_t max_depth_a, max_depth_b;
-    std::uint64_t max_pops;
-    double seconds;
-
-    [[nodiscard]] obb::StaticQueryOptions options() const {
-        return {false, boxes_for_leaves, max_depth_a, max_depth_b};
-    }
-};
+obb::StaticQueryOptions options_of(const obb::Limits& limits) { return {.boxes = limits.boxes}; }
 
 // A query, and what keeps its trees alive.
 struct AtRest {
@@ -56,11 +46,11 @@ struct AtRest {
     obb::StaticQuery query;
 };
 
-void init_query(AtRest* self, const Placed& a, const Placed& b, const Limits& limits) {
+void init_query(AtRest* self, const Placed& a, const Placed& b, const obb::Limits& limits) {
     new (self) AtRest{a.owner,
                       b.owner,
                       brief_pops(*a.tree, *b.tree),
-                      {a.tree->view, a.pose, b.tree->view, b.pose, limits.options()}};
+                      {a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits)}};
 }
 
 using Witness = std::optional<std::pair<std::int64_t, std::int64_t>>;
@@ -71,14 +61,6 @@ Witness witness_of(const obb::StaticQuery& query) {
     return found.empty() ? Witness{} : Witness{{found[0].a, found[0].b}};
 }
 
-// Box tests, triangle tests, exact ones, pops
-using Counts = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
-
-Counts counts_of(const obb::StaticQuery& query) {
-    const obb::StaticQueryCounts& c = query.counts();
-    return {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
-}
-
 // Whether the question was answered, whether boxes met, how far apart these hold what they stand
 // for, witness, seconds, counts and of either tree the boxes there are and may be
 using Collision =
@@ -86,12 +68,12 @@ using Collision =
                std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
                           std::uint64_t, std::uint64_t, std::uint64_t>>;
 
-Collision collide(const Placed& a, const Placed& b, const Limits& limits) {
+Collision collide(const Placed& a, const Placed& b, const obb::Limits& limits) {
     const Stopwatch watch;
-    obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, limits.options());
+    obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
     const bool is_complete =
         run(query, brief_pops(*a.tree, *b.tree), limits.max_pops, watch, limits.seconds);
-    const obb::StaticQueryCounts& c = query.counts();
+    const obb::WalkCounts& c = query.counts();
     return {is_complete,
             query.is_by_boxes(),
             query.error_bound(),
@@ -159,9 +141,9 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
             advance_in_parts(query, threads, most);
         }
     } catch (const TooManyPairs&) {
-        return {std::nullopt, counts_of(query)};
+        return {std::nullopt, counts_of(query.counts())};
     }
-    return {take_pairs(query), counts_of(query)};
+    return {take_pairs(query), counts_of(query.counts())};
 }
 
 } // namespace
@@ -176,15 +158,6 @@ void bind_static_query(nb::module_& m) {
                 new (self) Placed{tree, nb::cast<const Tree*>(tree), pose};
             },
             "tree"_a, "pose"_a);
-
-    nb::class_<Limits>(m, "Limits")
-        .def(
-            "__init__",
-            [](Limits* self, bool boxes_for_leaves, std::uint32_t max_depth_a,
-               std::uint32_t max_depth_b, std::uint64_t max_pops, double seconds) {
-                new (self) Limits{boxes_for_leaves, max_depth_a, max_depth_b, max_pops, seconds};
-            },
-            "boxes_for_leaves"_a, "max_depth_a"_a, "max_depth_b"_a, "max_pops"_a, "seconds"_a);
 
     // Arguments without names cost less.
     m.def("collide", &collide);
@@ -202,6 +175,5 @@ void bind_static_query(nb::module_& m) {
         .def_prop_ro("is_by_boxes", [](const AtRest& self) { return self.query.is_by_boxes(); })
         .def_prop_ro("error_bound", [](const AtRest& self) { return self.query.error_bound(); })
         .def("witness", [](const AtRest& self) { return witness_of(self.query); })
-        // One call for all the counters: reading them one by one would cost more than many a query.
-        .def("counts", [](const AtRest& self) { return counts_of(self.query); });
+        .def("counts", [](const AtRest& self) { return counts_of(self.query.counts()); });
 }

@@ -28,14 +28,14 @@ constexpr std::uint32_t kSmall = 512;
 } // namespace
 
 DistanceQuery::DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeView& b,
-                             const Pose& pose_b, const DistanceQueryOptions& options)
-    : a_(a, pose_a), b_(b, pose_b), options_(options) {
+                             const Pose& pose_b, const Limits& limits)
+    : a_(a, pose_a), b_(b, pose_b), boxes_(limits.boxes) {
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     shrink_ = frame.shrink;
     exponent_ = frame.exponent;
     unit_ = std::abs(exponent_) <= 700 ? std::ldexp(1.0, -exponent_) : 0.0;
-    tolerance_ = std::ldexp(options.tolerance, -exponent_);
+    tolerance_ = std::ldexp(std::max(limits.distance_tolerance, 0.0), -exponent_);
     box_units_ = {std::ldexp(1.0, a.scale_exponent - exponent_),
                   std::ldexp(1.0, b.scale_exponent - exponent_)};
     const int half = -exponent_ / 2;
@@ -95,8 +95,8 @@ DistanceQuery::Next DistanceQuery::next(const Pair& pair) const {
     }
     const Node* node_a = is_box_a ? &a_.tree().node(pair.a) : nullptr;
     const Node* node_b = is_box_b ? &b_.tree().node(pair.b) : nullptr;
-    const bool opens_a = is_box_a && is_open(*node_a, pair.a, options_.max_depth_a);
-    const bool opens_b = is_box_b && is_open(*node_b, pair.b, options_.max_depth_b);
+    const bool opens_a = is_box_a && is_open(*node_a, pair.a, boxes_.max_depth_a);
+    const bool opens_b = is_box_b && is_open(*node_b, pair.b, boxes_.max_depth_b);
     if (opens_a == is_box_a && opens_b == is_box_b && pair.a.triangle_count() <= kFew &&
         pair.b.triangle_count() <= kFew) {
         return Next::kMeasure;
@@ -114,7 +114,7 @@ DistanceQuery::Next DistanceQuery::next(const Pair& pair) const {
 }
 
 bool DistanceQuery::is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const {
-    return ref.depth < max_depth && !(options_.boxes_for_leaves && TreeView::is_leaf(node));
+    return ref.depth < max_depth && !(boxes_.boxes_for_leaves && TreeView::is_leaf(node));
 }
 
 DistanceQuery::Side DistanceQuery::reach(const PosedTree& body, const NodeRef& ref) const {

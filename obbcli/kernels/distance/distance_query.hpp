@@ -4,6 +4,7 @@
 
 #include "at_rest/static_query.hpp"
 #include "descent/bound_queue.hpp"
+#include "descent/limits.hpp"
 #include "descent/placed_boxes.hpp"
 #include "distance/distance_lanes.hpp"
 #include "nearest/closest_points.hpp"
@@ -20,23 +21,6 @@
 
 namespace obb {
 
-struct DistanceQueryOptions {
-    // A leaf of several triangles stands for them as its box does (the paper's coarse leaves).
-    bool boxes_for_leaves = false;
-    // Nodes this deep stand for what they hold; the root's depth is 0.
-    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
-    // The search may stop when its bounds are this close, in mesh units.
-    double tolerance = 0;
-};
-
-struct DistanceQueryCounts {
-    std::uint64_t box_tests = 0;
-    std::uint64_t triangle_tests = 0;
-    std::uint64_t exact_triangle_tests = 0; // those that took more digits than double has
-    std::uint64_t pops = 0;
-};
-
 // What is proven at any time: the surfaces, with their vertices posed and rounded to double, are at
 // least `low` and at most `high` apart, in mesh units. Both are 0 if and only if two triangles have
 // been proven to intersect. `point_a` and `point_b` are where `high` was measured.
@@ -52,7 +36,7 @@ class DistanceQuery {
     // The trees must outlive the query. Throws std::domain_error where posed coordinates would
     // leave the range of double.
     DistanceQuery(const TreeView& a, const Pose& pose_a, const TreeView& b, const Pose& pose_b,
-                  const DistanceQueryOptions& options);
+                  const Limits& limits);
 
     // Takes at most so many pairs off the queue, fewer where they take long (see SliceClock); true
     // when the bounds are as close as asked, or as rounding, boxes for triangles and the depth
@@ -61,7 +45,7 @@ class DistanceQuery {
 
     // Throws std::domain_error where the distance exceeds the largest double.
     [[nodiscard]] DistanceBounds bounds() const;
-    [[nodiscard]] const DistanceQueryCounts& counts() const { return counts_; }
+    [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
     // Of nodes with at most so many triangles all pairs are looked at, rather than smaller boxes.
@@ -144,7 +128,7 @@ class DistanceQuery {
     void touch(const NodeRef& a, const NodeRef& b);
 
     PosedTree a_, b_;
-    DistanceQueryOptions options_;
+    BoxLimits boxes_;
     RoundingBound bound_{};
     double shrink_ = 1; // a distance of boxes in their frame times this is one in the world
     int exponent_ = 0;
@@ -169,7 +153,7 @@ class DistanceQuery {
         std::array<Preparation, 2> preparations;
     };
     std::optional<Wait> wait_;
-    DistanceQueryCounts counts_;
+    WalkCounts counts_;
 };
 
 } // namespace obb

@@ -170,8 +170,8 @@ void ContactQuery::meet_boxes(const Entry& entry) {
 }
 
 void ContactQuery::visit(const Entry& entry) {
-    const bool open_a = is_open(a_.tree(), entry.a, options_.max_depth_a);
-    const bool open_b = is_open(b_.tree(), entry.b, options_.max_depth_b);
+    const bool open_a = is_open(a_.tree(), entry.a, options_.limits.boxes.max_depth_a);
+    const bool open_b = is_open(b_.tree(), entry.b, options_.limits.boxes.max_depth_b);
     if (!open_a && !open_b) {
         if (options_.each_pair && known_.contains(key_of(entry.a, entry.b))) {
             return;
@@ -197,8 +197,8 @@ void ContactQuery::visit(const Entry& entry) {
 
 // Opens the larger box, or the one that can be.
 void ContactQuery::part(const Entry& entry) {
-    const bool open_a = is_open(a_.tree(), entry.a, options_.max_depth_a);
-    const bool open_b = is_open(b_.tree(), entry.b, options_.max_depth_b);
+    const bool open_a = is_open(a_.tree(), entry.a, options_.limits.boxes.max_depth_a);
+    const bool open_b = is_open(b_.tree(), entry.b, options_.limits.boxes.max_depth_b);
     if (!open_b || (open_a && size_of(a_, entry.a) >= size_of(b_, entry.b))) {
         open<true>(entry);
     } else {

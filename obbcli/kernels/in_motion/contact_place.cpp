@@ -59,11 +59,15 @@ Vec3 ContactQuery::in_world(Vec3 point, double low) const {
 }
 
 ContactPlace ContactQuery::place(const Contact& contact) {
-    if (contact.evidence == Evidence::kBoxes) {
-        return place_of_boxes(contact);
+    ContactPlace place = contact.evidence == Evidence::kBoxes ? place_of_boxes(contact)
+                         : is_translation_ && clearance_ == 0 ? place_in_translation(contact)
+                                                              : place_of_triangles(contact);
+    place.point = 0.5 * place.point_a + 0.5 * place.point_b;
+    for (Vec3* v : {&place.point, &place.point_a, &place.point_b, &place.normal, &place.normal_a,
+                    &place.normal_b}) {
+        *v = *v + Vec3{0, 0, 0}; // no negative zeros
     }
-    return is_translation_ && clearance_ == 0 ? place_in_translation(contact)
-                                              : place_of_triangles(contact);
+    return place;
 }
 
 // The exact question about the pair knows its features as well.
@@ -71,14 +75,12 @@ ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
     const std::optional<PairContact> found =
         first_contact(a_.posed_triangle(contact.a), b_.posed_triangle(contact.b),
                       {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration});
-    const auto dimension = [](const Feature& f) { return std::min<int>(f.dimension, 2); };
     return {found->point,
             found->point,
             found->touch.normal,
             found->normal_a,
             found->normal_b,
-            dimension(found->touch.feature_a),
-            dimension(found->touch.feature_b)};
+            feature_code(found->touch.feature_a.dimension, found->touch.feature_b.dimension)};
 }
 
 ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
@@ -112,8 +114,8 @@ ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
             normal,
             face_normal(a.points, Feature{}, normal),
             face_normal(moved, Feature{}, -normal),
-            dimension_along(a.points, normal, size),
-            dimension_along(moved, -normal, size)};
+            feature_code(dimension_along(a.points, normal, size),
+                         dimension_along(moved, -normal, size))};
 }
 
 ContactPlace ContactQuery::place_of_boxes(const Contact& contact) {
@@ -125,13 +127,8 @@ ContactPlace ContactQuery::place_of_boxes(const Contact& contact) {
     const Vec3 point_a = nearest_in(a, b.center);
     const Vec3 point_b = nearest_in(b, point_a);
     const Vec3 normal = unit_or(b.center - a.center, Vec3{1, 0, 0});
-    return {in_world(point_a, contact.low),
-            in_world(point_b, contact.low),
-            normal,
-            smooth_normal(a, point_a, normal),
-            smooth_normal(b, point_b, -normal),
-            2,
-            2};
+    return {in_world(point_a, contact.low),    in_world(point_b, contact.low),     normal,
+            smooth_normal(a, point_a, normal), smooth_normal(b, point_b, -normal), kBoxFeature};
 }
 
 } // namespace obb

@@ -67,8 +67,8 @@ void ContactQuery::set_units() {
     closing_velocity_ = scaled(velocity, time_exponent_ - length_exponent_);
     duration_ = std::ldexp(options_.duration, -time_exponent_);
     time_tolerance_ = std::ldexp(options_.time_tolerance, -time_exponent_);
-    clearance_ = std::ldexp(options_.clearance, -length_exponent_);
-    distance_tolerance_ = std::ldexp(options_.distance_tolerance, -length_exponent_);
+    clearance_ = std::ldexp(options_.limits.clearance, -length_exponent_);
+    distance_tolerance_ = std::ldexp(options_.limits.distance_tolerance, -length_exponent_);
     relative_ = kRelative;
     between_error_ =
         8 * kUnitRoundoff * (norm_1(pivot_between_) + duration_ * norm_1(closing_velocity_)) +
@@ -114,7 +114,7 @@ MovingFrame ContactQuery::frame(double absolute, double time) const {
 bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
                            std::uint32_t max_depth) const {
     return !ref.is_triangle() && ref.depth < max_depth &&
-           !(options_.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
+           !(options_.limits.boxes.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
 }
 
 // The largest half extent, in the query's units; nothing for triangles.

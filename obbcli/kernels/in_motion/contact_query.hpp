@@ -4,6 +4,7 @@
 #pragma once
 
 #include "descent/bound_queue.hpp"
+#include "descent/limits.hpp"
 #include "descent/recent_vertices.hpp"
 #include "in_motion/box_steps.hpp"
 #include "in_motion/contact_plane.hpp"
@@ -25,13 +26,7 @@ struct ContactQueryOptions {
     double duration = 0;
     // Width asked of the bracket around the first contact, s.
     double time_tolerance = 0;
-    // Points this close may end the search, mesh units; negative: only proof does.
-    double distance_tolerance = -1;
-    // Surfaces this close or closer are in contact, mesh units.
-    double clearance = 0;
-    bool boxes_for_leaves = false;
-    std::uint32_t max_depth_a = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t max_depth_b = std::numeric_limits<std::uint32_t>::max();
+    Limits limits{};
     // Any proof of contact will do; how early it is does not matter.
     bool any_contact = false;
     // Not the bodies' first contact alone: that of every pair of triangles, one after the other.
@@ -39,13 +34,6 @@ struct ContactQueryOptions {
 };
 
 enum class Evidence : std::uint8_t { kNone, kIntersecting, kWithinTolerance, kBoxes };
-
-struct ContactQueryCounts {
-    std::uint64_t box_tests = 0;
-    std::uint64_t triangle_tests = 0;
-    std::uint64_t exact_triangle_tests = 0;
-    std::uint64_t pops = 0;
-};
 
 // A proven bracket of the first contact: none before `low`; contact at `high` as `evidence` says.
 // Times in s.
@@ -59,12 +47,17 @@ struct Contact {
     std::uint32_t triangle_a = 0, triangle_b = 0; // rows of the mesh files; 0 where boxes met
 };
 
-// What is to be said of the place of a contact, world coordinates at its time.
+// What is to be said of the place of a contact, world coordinates at its time. NaN where nothing
+// is.
 struct ContactPlace {
-    Vec3 point_a, point_b;
-    Vec3 normal;                  // unit, from A to B
-    Vec3 normal_a, normal_b;      // unit face normals, outward of the contact
-    int dimension_a, dimension_b; // of the features that meet: 0 vertex, 1 edge, 2 face
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    static constexpr Vec3 kNowhere{kNone, kNone, kNone};
+
+    Vec3 point_a = kNowhere, point_b = kNowhere;
+    Vec3 normal = kNowhere;                        // unit, from A to B
+    Vec3 normal_a = kNowhere, normal_b = kNowhere; // unit face normals, outward of the contact
+    FeatureCode feature = kNoFeature;
+    Vec3 point = kNowhere; // midway between point_a and point_b
 };
 
 class ContactQuery {
@@ -90,7 +83,7 @@ class ContactQuery {
     [[nodiscard]] const std::optional<Contact>& contact() const { return contact_; }
     // Where a contact that this query found is, at its `low`.
     [[nodiscard]] ContactPlace place(const Contact& contact);
-    [[nodiscard]] const ContactQueryCounts& counts() const { return counts_; }
+    [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
     // A pair that is proven apart before `time`. From `end` on, unless that is the duration, an
@@ -206,7 +199,7 @@ class ContactQuery {
     double lower_bound_ = 0;
     bool is_finished_ = false;
     bool has_given_up_ = false;
-    ContactQueryCounts counts_;
+    WalkCounts counts_;
 };
 
 } // namespace obb

@@ -5,7 +5,6 @@
 #include "at_rest/static_query.hpp"
 #include "in_motion/contact_query.hpp"
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -24,15 +23,6 @@ struct SweepQuestion {
     double duration, time_tolerance;
 };
 
-// Of every question.
-struct SweepOptions {
-    double distance_tolerance, clearance;
-    bool boxes_for_leaves;
-    std::uint32_t max_depth_a, max_depth_b;
-    std::uint64_t max_pops;
-    double seconds;
-};
-
 enum class SweepStatus : std::uint8_t {
     kSeparated,
     kContact,
@@ -44,20 +34,14 @@ enum class SweepStatus : std::uint8_t {
 
 // A row as Python reads it; what does not apply is NaN, -1 or 0.
 struct SweepAnswer {
-    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    static constexpr Vec3 kNowhere{kNone, kNone, kNone};
-
-    double low = kNone, high = kNone;
-    Vec3 point = kNowhere, point_a = kNowhere, point_b = kNowhere;
-    Vec3 normal = kNowhere, normal_a = kNowhere, normal_b = kNowhere;
-    double distance = kNone, error_bound = 0;
+    double low = ContactPlace::kNone, high = ContactPlace::kNone;
+    ContactPlace place;
+    double distance = ContactPlace::kNone, error_bound = 0;
     std::int64_t triangle_a = -1, triangle_b = -1;
-    ContactQueryCounts counts;
+    WalkCounts counts;
     SweepStatus status = SweepStatus::kSeparated;
     Evidence evidence = Evidence::kNone;
-    std::uint8_t feature = 0; // 1 + 3 * dimension of A's + dimension of B's; 10 a box
-    std::uint8_t approximate = 0;
-    std::array<std::uint8_t, 4> padding{};
+    bool approximate = false;
 };
 
 // The question at t = 0, asked once where all rows have one placement.
@@ -66,7 +50,7 @@ class SweepStart {
     // The trees must outlive it. Throws std::domain_error where posed coordinates would leave the
     // range of double.
     SweepStart(const TreeView& a, const TreeView& b, const Placement& placement,
-               const SweepOptions& options);
+               const Limits& limits);
 
     // Goes on for a slice; true when answered or out of pops.
     bool advance();
@@ -88,7 +72,7 @@ class SweepRow {
   public:
     // The arguments must outlive it. `start` is that of all rows, or null.
     SweepRow(const TreeView& a, const TreeView& b, const Placement& placement,
-             const SweepQuestion& question, const SweepOptions& options, const SweepStart* start);
+             const SweepQuestion& question, const Limits& limits, const SweepStart* start);
 
     // True when there is an answer. Throws as the queries do.
     bool advance();
@@ -106,7 +90,7 @@ class SweepRow {
     const TreeView *a_, *b_;
     const Placement* placement_;
     const SweepQuestion* question_;
-    const SweepOptions* options_;
+    const Limits* limits_;
     std::optional<SweepStart> own_start_;
     const SweepStart* start_;
     std::optional<ContactQuery> moving_;

@@ -26,11 +26,7 @@ constexpr std::uint32_t kFewer = 4;
 } // namespace
 
 // What stands for triangles may meet earlier than they.
-bool ContactQuery::has_limits() const {
-    constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
-    return options_.boxes_for_leaves || options_.max_depth_a < kNoLimit ||
-           options_.max_depth_b < kNoLimit;
-}
+bool ContactQuery::has_limits() const { return options_.limits.boxes != BoxLimits{}; }
 
 // Asks two triangles under a pair before all that may be earlier is opened: of pairs that touch at
 // one time the boxes are all earlier than the first triangles.

@@ -170,9 +170,9 @@ std::optional<Contact> ContactQuery::contact_of(std::span<const Entry> stalled) 
         for (const Entry& entry : stalled) {
             const double time = std::min(entry.time + reach * time_tolerance_, duration_);
             if (Vec3 unused;
-                clearance_ > 0 && distance_at(entry, time, unused) <= options_.clearance) {
+                clearance_ > 0 && distance_at(entry, time, unused) <= options_.limits.clearance) {
                 return Contact{first.time, time,    Evidence::kWithinTolerance,
-                               entry.a,    entry.b, options_.clearance,
+                               entry.a,    entry.b, options_.limits.clearance,
                                0};
             }
             if (surely_intersect_at(entry, time)) {
@@ -183,7 +183,7 @@ std::optional<Contact> ContactQuery::contact_of(std::span<const Entry> stalled) 
     Vec3 direction;
     const double distance = distance_at(first, first.time, direction);
     const double extents = a_.extent() + b_.extent(); // of points: none
-    if (extents > 0 && distance - options_.clearance > kSameDistance * extents) {
+    if (extents > 0 && distance - options_.limits.clearance > kSameDistance * extents) {
         return std::nullopt;
     }
     return Contact{first.time, first.time, Evidence::kWithinTolerance, first.a, first.b,

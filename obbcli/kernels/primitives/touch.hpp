@@ -4,6 +4,7 @@
 #include "numbers/vec.hpp"
 #include "primitives/axis.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -23,6 +24,16 @@ struct Feature {
     std::array<std::int8_t, 3> signs{};
     std::uint8_t dimension = 3; // 0 vertex, 1 edge, 2 face, 3 the shape as a whole
 };
+
+// Which features meet, in the order of FEATURES in words.py: none that could be told, those of A
+// and B by their dimensions, or boxes that stand for triangles.
+using FeatureCode = std::uint8_t;
+constexpr FeatureCode kNoFeature = 0, kBoxFeature = 10;
+
+// A shape as a whole counts as a face.
+[[nodiscard]] constexpr FeatureCode feature_code(int dimension_a, int dimension_b) {
+    return static_cast<FeatureCode>(1 + 3 * std::min(dimension_a, 2) + std::min(dimension_b, 2));
+}
 
 // Edge k of a triangle runs from vertex k to the next; its face normal is edge 0 x edge 1. The
 // face normals and edges of a box are its axes.

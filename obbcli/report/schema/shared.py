@@ -8,6 +8,7 @@ from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts, QueryStats
 from obbcli.answers.status import Status
+from obbcli.answers.words import EvidenceWord, FeatureWord
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.words import (
     AMOUNT,
@@ -28,10 +29,6 @@ from obbcli.report.schema.words import (
     tuple_of,
     word_of,
 )
-
-_PARTS = ("vertex", "edge", "face")
-FEATURES = (*(f"{a}-{b}" for a in _PARTS for b in _PARTS), "box")
-EVIDENCES = ("intersecting", "within_tolerance", "boxes", "sampled")
 
 STATUS = told(
     word_of(status.value for status in Status),
@@ -65,7 +62,7 @@ CONTACT_FIELDS = documented(
         "status": STATUS,
         "time": or_null(AMOUNT),
         "time_bounds": or_null(TIME_BOUNDS),
-        "evidence": or_null(word_of(EVIDENCES)),
+        "evidence": or_null(word_of(get_args(EvidenceWord))),
         "point": or_null(VECTOR),
         "point_a": or_null(VECTOR),
         "point_b": or_null(VECTOR),
@@ -74,7 +71,7 @@ CONTACT_FIELDS = documented(
         "normal_b": or_null(VECTOR),
         "triangle_a": or_null(COUNT),
         "triangle_b": or_null(COUNT),
-        "feature": or_null(word_of(FEATURES)),
+        "feature": or_null(word_of(get_args(FeatureWord))),
         "distance": or_null(AMOUNT),
         "contained": or_null(word_of(("a", "b"))),
         "approximate": FLAG,
