@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from obbcli.mesh.formats.obj_statements import PASSED_OVER, OtherLines, is_passed_over
 from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import (
     all_numbers,
@@ -27,28 +28,17 @@ if TYPE_CHECKING:
     from obbcli.errors import MeshError
     from obbcli.mesh.source import MeshArrays, Source
 
-#: Statements that place no polygon: attributes, grouping, points and lines, appearance.
-_PASSED_OVER = frozenset(
-    b"vt vn vp p l g o s mg usemtl mtllib usemap maplib bevel c_interp d_interp lod shadow_obj "
-    b"trace_obj ctech stech cstype deg bmat step parm trim hole scrv sp end con vc".split()
-)
-_REFUSED = {
-    b"curv": "free-form curve",
-    b"curv2": "free-form curve",
-    b"surf": "free-form surface",
-    b"call": "call of another file",
-    b"csh": "shell command",
-}
-
 
 def read_obj(source: Source) -> MeshArrays:
     """Return vertices and triangles of all objects and groups, in the file's order.
 
     Indices may be negative (counted back from the last vertex so far) and carry `/vt/vn` parts;
-    polygons are cut as `triangulated` says. Free-form surfaces are refused, not skipped.
+    polygons are cut as `triangulated` says. Free-form surfaces are refused, not skipped; lines that
+    are no statement are passed over with a note where they cannot be part of the shape.
 
     Raises:
-        MeshError: no statement, no number, an index out of range; with the line.
+        MeshError: no number, an index out of range, a line that may be part of the shape; with the
+            line.
     """
     regular = _read_regular(source)
     return regular or _read_statements(source)
@@ -67,14 +57,15 @@ def _read_regular(source: Source) -> MeshArrays | None:
     vertices = [line for line in lines if line.startswith(b"v ")]
     faces = [line for line in lines if line.startswith(b"f ")]
     rest = [line for line in lines if not line.startswith((b"v ", b"f ", b"#"))]
-    if not vertices or not faces or not _PASSED_OVER.issuperset(filter(None, map(_keyword, rest))):
+    if not vertices or not faces or not PASSED_OVER.issuperset(filter(None, map(_keyword, rest))):
         return None
     width, count = len(vertices[0].split()), len(faces[0].split()) - 1
     words = uniform_words(vertices, width)
     names = uniform_words(faces, count + 1)
     if words is None or names is None or width < 4 or count < 3:
         return None
-    columns = [all_numbers(words[axis::width]) for axis in (1, 2, 3)]
+    # Beside x, y and z there may be a weight or a colour, which must be numbers as well.
+    columns = [all_numbers(words[axis::width]) for axis in range(1, width)]
     del names[:: count + 1]
     if any(b"/" in name for name in names[:count]):
         names = [name.partition(b"/")[0] for name in names]
@@ -83,7 +74,7 @@ def _read_regular(source: Source) -> MeshArrays | None:
         return None
     if any(column is None for column in columns):
         return None
-    points = np.stack([column for column in columns if column is not None], axis=1)
+    points = np.stack([column for column in columns[:3] if column is not None], axis=1)
     counts = np.full(len(faces), count)
     return points, triangulated(source, points, corners - 1, counts)
 
@@ -99,16 +90,12 @@ def _read_statements(source: Source) -> MeshArrays:
     coordinates: list[float] = []
     corners: list[int] = []
     counts: list[int] = []
+    others = OtherLines(source)
+    opens = True
     for line, words in _statements(source.data):
         keyword = words[0]
         if keyword == b"v":
-            try:
-                x, y, z = map(float, words[1:4])
-            except ValueError:
-                raise _bad_vertex(source, words, line) from None
-            if not math.isfinite(x + y + z) or b"_" in b"".join(words):
-                _check_numbers(source, words, line)
-            coordinates += (x, y, z)
+            coordinates += _vertex(source, words, line)
         elif keyword in (b"f", b"fo"):
             count = len(coordinates) // 3
             face = [_index(source, word, line, count) for word in words[1:]]
@@ -118,13 +105,28 @@ def _read_statements(source: Source) -> MeshArrays:
                 )
             corners += face
             counts.append(len(face))
-        elif keyword not in _PASSED_OVER:
-            raise _unknown(source, keyword, line)
+        elif not is_passed_over(keyword):
+            others.meet(words, line, opens=opens)
+            continue
+        opens = False
+    others.tell(has_faces=bool(counts))
     vertices = np.array(coordinates, dtype=np.float64).reshape(-1, 3)
     if corners and max(corners) >= len(vertices):
         raise _out_of_range(source, len(vertices))
     rows, widths = (np.array(values, dtype=np.int64) for values in (corners, counts))
     return vertices, triangulated(source, vertices, rows, widths)
+
+
+def _vertex(source: Source, words: list[bytes], line: int) -> tuple[float, float, float]:
+    """Return the coordinates of a vertex; a weight or a colour may follow them."""
+    try:
+        x, y, z = map(float, words[1:4])
+        total = sum(map(float, words[4:]), start=x + y + z)
+    except ValueError:
+        raise _bad_vertex(source, words, line) from None
+    if not math.isfinite(total) or b"_" in b"".join(words):
+        _check_numbers(source, words, line)
+    return x, y, z
 
 
 def _statements(data: bytes) -> Iterator[tuple[int, list[bytes]]]:
@@ -187,21 +189,6 @@ def _bad_vertex(source: Source, words: list[bytes], line: int) -> MeshError:
 
 
 def _check_numbers(source: Source, words: list[bytes], line: int) -> None:
-    """Raise the error of the first of a vertex's coordinates that is not a finite number."""
-    for word in words[1:4]:
+    """Raise the error of the first of a vertex's words that is not a finite number."""
+    for word in words[1:]:
         number(source, word, line)
-
-
-def _unknown(source: Source, keyword: bytes, line: int) -> MeshError:
-    """Return the error of a statement that cannot be passed over."""
-    if keyword in _REFUSED:
-        return source.error(
-            f"'{shown(keyword)}' is a {_REFUSED[keyword]}, which is not read",
-            "export the model as triangles",
-            at=str(line),
-        )
-    return source.error(
-        f"'{shown(keyword)}' is no OBJ statement",
-        "remove the line if it is no part of the shape",
-        at=str(line),
-    )
