@@ -16,6 +16,7 @@ from screw_meshes import box, cube, star
 import obbcli
 from obbcli import Accuracy, Body, Contact, Mesh, Motion, ObbTree, Status
 from obbcli.questions.contacts import search_contacts
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.search import Search
 
 SAMPLES = Path(__file__).resolve().parents[1] / "sample_meshes"
@@ -181,9 +182,9 @@ def spinning_stars() -> tuple[Body, Body]:
 
 def test_nothing_is_done_for_contacts_that_nobody_asks_for() -> None:
     whole, part = Search(MANY), Search(MANY)
-    every = list(search_contacts(spinning_stars(), None, Accuracy(), whole))
+    every = list(search_contacts(PairQuestion.of(*spinning_stars()), whole))
 
-    found = search_contacts(spinning_stars(), None, Accuracy(), part)
+    found = search_contacts(PairQuestion.of(*spinning_stars()), part)
     assert part.counts == (0, 0, 0, 0)
     first = next(found)
     pops = part.counts[3]
@@ -196,11 +197,11 @@ def test_nothing_is_done_for_contacts_that_nobody_asks_for() -> None:
 @pytest.mark.parametrize("share", [0.3, 1.0])
 def test_search_ends_where_later_contacts_are_of_no_interest(share: float) -> None:
     whole = Search(MANY)
-    every = list(search_contacts(spinning_stars(), None, Accuracy(), whole))
+    every = list(search_contacts(PairQuestion.of(*spinning_stars()), whole))
     end = every[round(share * (len(every) - 1))].time
     part = Search(MANY, end=end)
 
-    found = list(search_contacts(spinning_stars(), None, Accuracy(), part))
+    found = list(search_contacts(PairQuestion.of(*spinning_stars()), part))
 
     assert found == [contact for contact in every if contact.time <= end]
     assert part.counts[3] < whole.counts[3]
@@ -210,7 +211,7 @@ def test_search_tells_how_far_it_has_come() -> None:
     told: list[float] = []
     search = Search(MANY, progress=told.append)
 
-    found = list(search_contacts(spinning_stars(), None, Accuracy(), search))
+    found = list(search_contacts(PairQuestion.of(*spinning_stars()), search))
 
     assert told == sorted(told)
     assert told[0] == 0

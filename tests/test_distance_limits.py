@@ -17,8 +17,14 @@ from tree_meshes import soup
 
 import obbcli
 from obbcli.questions.distance import measure
+from obbcli.questions.pair_question import PairQuestion
 
 SCENES = ("far", "gap_1e-1", "gap_1e-3", "interlocked", "nested", "plates", "deep")
+
+
+def at_rest(a, b, **accuracy):
+    """Return the question about two bodies at t = 0."""
+    return PairQuestion.of(a, b, 0.0, obbcli.Accuracy(**accuracy))
 
 
 def bodies_of(name: str, triangles: int = 600, **options) -> tuple[obbcli.Body, obbcli.Body]:
@@ -57,9 +63,7 @@ def test_distance_of_boxes_is_bounded_at_every_depth(name):
     fine = obbcli.distance(a, b)
 
     for depth_a, depth_b in ((0, 0), (0, 3), (4, 0), (2, 5), (5, 5), (None, 3), (99, 99)):
-        answer, is_complete = measure(
-            a, b, obbcli.Accuracy(max_depth_a=depth_a, max_depth_b=depth_b)
-        )
+        answer, is_complete = measure(at_rest(a, b, max_depth_a=depth_a, max_depth_b=depth_b))
 
         assert is_complete
         assert_holds(answer, fine)
@@ -86,7 +90,7 @@ def test_distance_at_a_limit_of_pops_is_bounded(name):
     fine = obbcli.distance(a, b)
 
     for pops in (1, 7, 50, 700):
-        answer, is_complete = measure(a, b, obbcli.Accuracy(max_iterations=pops))
+        answer, is_complete = measure(at_rest(a, b, max_iterations=pops))
 
         assert answer.stats.pops <= pops
         assert is_complete == (fine.stats.pops <= pops)
@@ -107,7 +111,7 @@ def test_distance_bounds_only_close_with_more_pops(name):
 def test_distance_at_a_timeout_is_bounded():
     a, b = bodies_of("nested", 20_000)
 
-    answer, is_complete = measure(a, b, obbcli.Accuracy(timeout=0.0))
+    answer, is_complete = measure(at_rest(a, b, timeout=0.0))
 
     assert not is_complete
     assert 0 <= answer.bounds[0] < answer.bounds[1]

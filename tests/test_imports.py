@@ -99,6 +99,7 @@ NEEDED = {
     "obbcli.motion.rotation",
     "obbcli.questions",
     "obbcli.questions.border",
+    "obbcli.questions.pair_question",
     "obbcli.questions.collide",
     "obbcli.report",
     "obbcli.report.collide",

@@ -7,6 +7,7 @@ from hostile_meshes import HOSTILE
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, Query, distance, first_contact
 from obbcli.questions.distance import measure
+from obbcli.questions.pair_question import PairQuestion
 
 POPS = 4
 # Of a leaf so many triangles are looked at in one pop.
@@ -58,15 +59,14 @@ def test_leaves_of_whole_meshes_change_no_answer(spin):
 def test_distance_counts_the_pops_that_it_takes():
     pair = HOSTILE["bowl and spike"](300)
     a, b = (Mesh(s.vertices, s.faces) for s in (pair.a, pair.b))
-    answer, is_complete = measure(a, Body(b, Pose(translation=pair.apart)), Accuracy())
+    asked = PairQuestion.of(a, Body(b, Pose(translation=pair.apart)), 0.0)
+    answer, is_complete = measure(asked)
     pops = answer.stats.pops
     assert is_complete
     assert pops > 2 * A_POP
 
     for limit in (1, A_POP, pops - 1, pops):
-        cut, is_complete = measure(
-            a, Body(b, Pose(translation=pair.apart)), Accuracy(max_iterations=limit)
-        )
+        cut, is_complete = measure(asked._replace(accuracy=Accuracy(max_iterations=limit)))
         assert (cut.stats.pops, is_complete) == (limit, limit == pops)
         assert cut.bounds[0] <= answer.bounds[0]
 

@@ -12,13 +12,14 @@ from screw_meshes import angle_bar, box, cube, octahedron, star, tetrahedron
 
 from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status, first_contact
 from obbcli.questions.legs.steps import steps_of
+from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from obbcli.questions.legs.relay import Leg
+    from obbcli.questions.legs.leg import Leg
 
     Path = Callable[[float], NDArray[np.float64]]
 
@@ -87,11 +88,8 @@ def through_poses(draw: np.random.Generator, turns: float) -> Moving:
 def steps(
     bodies: tuple[Body, Body], duration: float, count: int, integrator: Any = "exact"
 ) -> list[Leg]:
-    trees = bodies[0].shape, bodies[1].shape
-    assert isinstance(trees[0], ObbTree)
-    assert isinstance(trees[1], ObbTree)
     accuracy = Accuracy(method="sampled", integrator=integrator, steps=count)
-    return list(steps_of(bodies, (trees[0], trees[1]), duration, accuracy))
+    return list(steps_of(PairQuestion.of(*bodies, duration, accuracy)))
 
 
 def modelled(body: Body, time: float) -> NDArray[np.float64]:

@@ -18,14 +18,12 @@ if TYPE_CHECKING:
 
     from obbcli.answers.contact import Contact, FirstContact
     from obbcli.answers.counts import QueryStats
-    from obbcli.cli.options.placement import Question
-    from obbcli.motion.body import Body
+    from obbcli.questions.pair_question import PairQuestion
     from obbcli.questions.search import Search
 
 
 def list_contacts(
-    bodies: tuple[Body, Body],
-    question: Question,
+    pair: PairQuestion,
     first: FirstContact,
     limit: int | None,
     *,
@@ -35,8 +33,7 @@ def list_contacts(
     """Return the contacts of all pairs, and what it cost to know them and the first.
 
     Args:
-        bodies: A and B, on trees.
-        question: that was asked about them.
+        pair: the question, about bodies on trees.
         first: what came out; what it left of the limits is left to the list.
         limit: at most so many contacts.
         is_patch: whether to list those alone whose bracket overlaps that of the first.
@@ -45,7 +42,6 @@ def list_contacts(
     Raises:
         CancelledError: Ctrl-C.
     """
-    from obbcli.questions.border import duration_of
     from obbcli.questions.contacts import search_contacts
     from obbcli.questions.search import Search
 
@@ -53,28 +49,25 @@ def list_contacts(
         return Listing([], is_complete=True), first.stats
     if first.status is Status.UNRESOLVED:
         return Listing([], is_complete=False, unresolved_after=first.time), first.stats
-    accuracy, spent = question.accuracy, first.stats
-    duration = duration_of(question.duration, bodies)
+    accuracy, spent = pair.accuracy, first.stats
     start = time.perf_counter()
-    with proving(duration, "all contacts known before", wanted=progress) as show:
+    with proving(pair.duration, "all contacts known before", wanted=progress) as show:
         search = Search(
             accuracy.max_iterations - spent.pops,
             None if accuracy.timeout is None else accuracy.timeout - spent.seconds["query"],
-            end=_end_of(first, question, duration) if is_patch else math.inf,
+            end=_end_of(first, pair) if is_patch else math.inf,
             progress=show,
         )
-        listing = _listed(search_contacts(bodies, duration, accuracy, search), first.time, limit)
-    return listing, _with(spent, search, bodies, time.perf_counter() - start)
+        listing = _listed(search_contacts(pair, search), first.time, limit)
+    return listing, _with(spent, search, pair, time.perf_counter() - start)
 
 
-def _end_of(first: FirstContact, question: Question, duration: float) -> float:
+def _end_of(first: FirstContact, pair: PairQuestion) -> float:
     """Return the time up to which contacts belong to the first, s."""
-    from obbcli.questions.border import time_tolerance
-
     assert first.time_bounds is not None
     low, high = first.time_bounds
     # Of boxes nothing says when there is contact: a bracket as wide as one may be.
-    return low + time_tolerance(question.accuracy, duration) if high is None else high
+    return low + pair.time_tolerance if high is None else high
 
 
 def _listed(found: Iterator[Contact], first_time: float, limit: int | None) -> Listing:
@@ -90,12 +83,9 @@ def _listed(found: Iterator[Contact], first_time: float, limit: int | None) -> L
     return Listing(contacts, is_complete=len(contacts) != limit)
 
 
-def _with(
-    spent: QueryStats, search: Search, bodies: tuple[Body, Body], seconds: float
-) -> QueryStats:
+def _with(spent: QueryStats, search: Search, pair: PairQuestion, seconds: float) -> QueryStats:
     """Return what an answer and its list cost together."""
-    from obbcli.questions.border import stats_of, trees_of
-    from obbcli.questions.legs.relay import sum_of
+    from obbcli.questions.border import stats_of
 
-    counts = sum_of(spent[:4], search.counts)
-    return stats_of(trees_of(bodies), counts, {**spent.seconds, "contacts": seconds})
+    counts = spent.counts + search.counts
+    return stats_of(pair.trees, counts, {**spent.seconds, "contacts": seconds})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
@@ -10,15 +9,8 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.collision import Collision
 from obbcli.errors import UnresolvedError
 from obbcli.motion.body import as_body
-from obbcli.questions.border import (
-    NO_LIMIT,
-    duration_of,
-    limits_of,
-    placed_of,
-    refused,
-    trees_of,
-    whole_limit,
-)
+from obbcli.questions.border import NO_LIMIT, limits_of, placed_of, refused, whole_limit
+from obbcli.questions.pair_question import PairQuestion, trees_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,8 +21,7 @@ if TYPE_CHECKING:
 
 # What a pair takes at the peak: two rows, and what lists that grow set aside.
 _BYTES_A_PAIR = 32
-_EXACT = Accuracy()
-_EXACT_LIMITS = limits_of(_EXACT)
+_EXACT_LIMITS = limits_of(Accuracy())
 
 
 def collide(
@@ -77,29 +68,28 @@ def collide(
                 return Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
             except (ValueError, kernels.TreeError) as fault:
                 raise refused(trees_of((as_body(a), as_body(b))), fault) from fault
-    accuracy = _EXACT if accuracy is None else accuracy
-    bodies = as_body(a), as_body(b)
-    is_at_rest = duration_of(duration, bodies) == 0 and accuracy.clearance == 0
-    if solid or not is_at_rest:
-        return _collide_moving(bodies, duration, accuracy, solid)
-    start = perf_counter()
-    trees = trees_of(bodies)
-    loaded = perf_counter() - start
-    here, there = (placed_of(*pair) for pair in zip(bodies, trees, strict=True))
+    return collide_pair(PairQuestion.of(a, b, duration, accuracy), solid=solid)
+
+
+def collide_pair(pair: PairQuestion, *, solid: bool) -> Collision:
+    """Return what `collide` says of a question that is understood already.
+
+    Raises:
+        ObbError: as `collide`.
+    """
+    accuracy = pair.accuracy
+    if solid or pair.duration > 0 or accuracy.clearance > 0:
+        # Imported where it is needed: bodies at rest answer without it.
+        from obbcli.questions.first_contact import Query
+
+        query = Query.about(pair, solid=solid, any_contact=True)
+        return collision_of(query.advance(accuracy.max_iterations, accuracy.timeout))
+    here, there = map(placed_of, pair.bodies, pair.trees)
     try:
-        return Collision.at_rest(kernels.collide(here, there, limits_of(accuracy)), loaded)
+        found = kernels.collide(here, there, limits_of(accuracy))
     except (ValueError, kernels.TreeError) as fault:
-        raise refused(trees, fault) from fault
-
-
-def _collide_moving(
-    bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy, solid: bool
-) -> Collision:
-    # Imported where it is needed: bodies at rest answer without it.
-    from obbcli.questions.first_contact import Query
-
-    query = Query(*bodies, duration, accuracy, solid=solid, any_contact=True)
-    return collision_of(query.advance(accuracy.max_iterations, accuracy.timeout))
+        raise refused(pair.trees, fault) from fault
+    return Collision.at_rest(found, pair.load_seconds)
 
 
 def collision_of(found: FirstContact) -> Collision:
@@ -160,7 +150,7 @@ def triangle_pairs(
     most = NO_LIMIT if limit is None else whole_limit(limit)
     bodies = as_body(a), as_body(b)
     trees = trees_of(bodies)
-    here, there = (placed_of(*pair) for pair in zip(bodies, trees, strict=True))
+    here, there = map(placed_of, bodies, trees)
     room = NO_LIMIT
     if max_memory is not None:
         room = whole_limit(max_memory, "max_memory") // _BYTES_A_PAIR

@@ -18,18 +18,13 @@ from obbcli.answers.contact import Contact
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError, UnresolvedError
 from obbcli.mesh import Mesh
-from obbcli.motion.body import Body, as_body, with_pivot
-from obbcli.questions.border import (
-    duration_of,
-    moving_query,
-    time_tolerance,
-    trees_of,
-    whole_limit,
-)
+from obbcli.motion.body import Body, with_pivot
+from obbcli.questions.border import moving_query, whole_limit
 from obbcli.questions.describe import contact_at_start, contact_of
 from obbcli.questions.first_contact import Query
-from obbcli.questions.legs.relay import on_clock
+from obbcli.questions.legs.leg import on_clock
 from obbcli.questions.legs.through_poses import legs_of
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.search import Search
 from obbcli.tree.tree import ObbTree
 
@@ -37,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from obbcli.motion.body import Shape
-    from obbcli.questions.border import Trees
 
 _EXACT = Accuracy()
 
@@ -79,28 +73,29 @@ def contacts(
         >>> [one.time for one in contacts(finger, "sample_meshes/workpiece.obj", limit=2)]
         [0.5, 0.5]
     """
-    accuracy = _EXACT if accuracy is None else accuracy
     most = None if limit is None else whole_limit(limit)
-    search = Search(accuracy.max_iterations, accuracy.timeout)
-    return islice(search_contacts((as_body(a), as_body(b)), duration, accuracy, search), most)
+    asked = _EXACT if accuracy is None else accuracy
+    _refuse_sampled(asked)
+    pair = PairQuestion.of(a, b, duration, asked)
+    search = Search(asked.max_iterations, asked.timeout)
+    return islice(search_contacts(pair, search), most)
 
 
-def search_contacts(
-    bodies: tuple[Body, Body], duration: float | None, accuracy: Accuracy, search: Search
-) -> Iterator[Contact]:
+def _refuse_sampled(accuracy: Accuracy) -> None:
+    if accuracy.method == "sampled":
+        raise MotionError(
+            "method='sampled'", "knows the first contact alone", "use the certified method"
+        )
+
+
+def search_contacts(pair: PairQuestion, search: Search) -> Iterator[Contact]:
     """Yield what `contacts` yields, as far as a search goes, whose limits stand for `accuracy`'s.
 
     Raises:
         MotionError: as `contacts` does; the other errors likewise.
     """
-    if accuracy.method == "sampled":
-        raise MotionError(
-            "method='sampled'", "knows the first contact alone", "use the certified method"
-        )
-    end = duration_of(duration, bodies)
-    trees = trees_of(bodies)
-    is_steady = all(body.motion.steady is not None for body in bodies)
-    found = (_of_motion if is_steady else _of_path)(bodies, trees, end, accuracy, search)
+    _refuse_sampled(pair.accuracy)
+    found = (_of_motion if pair.is_steady else _of_path)(pair, search)
     return takewhile(lambda contact: _low(contact) <= search.end, found)
 
 
@@ -109,28 +104,24 @@ def _low(contact: Contact) -> float:
     return contact.time
 
 
-def _of_motion(
-    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
-) -> Iterator[Contact]:
+def _of_motion(pair: PairQuestion, search: Search) -> Iterator[Contact]:
     """Return the contacts of bodies of constant velocities."""
-    query = moving_query(bodies, trees, duration, accuracy, each_pair=True)
+    query = moving_query(pair, each_pair=True)
 
     def contact(found: kernels.Contact) -> Contact:
         if found.high == 0 and found.evidence is kernels.Evidence.INTERSECTING:
-            return contact_at_start(bodies, trees, found.triangle_a, found.triangle_b)
-        return contact_of(query, found, accuracy.clearance)
+            return contact_at_start(pair.bodies, pair.trees, found.triangle_a, found.triangle_b)
+        return contact_of(query, found, pair.accuracy.clearance)
 
-    return map(contact, search.found(query, trees))
+    return map(contact, search.found(query, pair.trees))
 
 
-def _of_path(
-    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
-) -> Iterator[Contact]:
+def _of_path(pair: PairQuestion, search: Search) -> Iterator[Contact]:
     """Yield the contacts of bodies of which one follows a path."""
     waiting: list[tuple[float, int, int, int, Contact]] = []
     number = count()
     try:
-        for low, ask in _near_pairs(bodies, trees, duration, accuracy, search):
+        for low, ask in _near_pairs(pair, search):
             yield from _taken_before(low, waiting)
             contact = ask()
             if contact is not None:
@@ -151,7 +142,7 @@ def _taken_before(
 
 
 def _near_pairs(
-    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy, search: Search
+    pair: PairQuestion, search: Search
 ) -> Iterator[tuple[float, Callable[[], Contact | None]]]:
     """Yield each pair that comes near on a leg, from when on, and what says whether it touches.
 
@@ -159,26 +150,25 @@ def _near_pairs(
     alone, over the whole path.
     """
     known = set()
-    for leg in legs_of(bodies, trees, duration):
+    clearance = pair.accuracy.clearance
+    for leg in legs_of(pair):
         if leg.start > search.end:
             return
-        wide = replace(
-            accuracy,
-            clearance=accuracy.clearance + leg.slack,
-            time_tolerance=time_tolerance(accuracy, duration),
+        wide = leg.question(
+            pair, clearance=clearance + leg.slack, time_tolerance=pair.time_tolerance
         )
-        query = moving_query(leg.bodies, trees, leg.duration, wide, each_pair=True)
-        for found in search.found(query, trees, leg.start):
+        query = moving_query(wide, each_pair=True)
+        for found in search.found(query, pair.trees, leg.start):
             if found.ranges in known:
                 continue
             known.add(found.ranges)
-            low = on_clock(leg.start, found.low, duration, up=False)
+            low = on_clock(leg.start, found.low, pair.duration, up=False)
             if found.evidence is kernels.Evidence.BOXES:
-                contact = contact_of(query, found, accuracy.clearance)
+                contact = contact_of(query, found, clearance)
                 yield low, partial(_boxes, contact, low)
             else:
                 ids = found.triangle_a, found.triangle_b
-                yield low, partial(_alone, bodies, trees, ids, duration, accuracy, low, search)
+                yield low, partial(_alone, pair, ids, low, search)
 
 
 def _boxes(contact: Contact, low: float) -> Contact:
@@ -187,22 +177,14 @@ def _boxes(contact: Contact, low: float) -> Contact:
     return replace(contact, status=status, time=low, time_bounds=(low, None))
 
 
-def _alone(
-    bodies: tuple[Body, Body],
-    trees: Trees,
-    ids: tuple[int, int],
-    duration: float,
-    accuracy: Accuracy,
-    low: float,
-    search: Search,
-) -> Contact | None:
+def _alone(pair: PairQuestion, ids: tuple[int, int], low: float, search: Search) -> Contact | None:
     """Return the first contact of one pair that is apart before `low`, s; None where it has none.
 
     Raises:
         UnresolvedError: a limit was reached.
     """
-    a, b = (_triangle(*of) for of in zip(bodies, trees, ids, strict=True))
-    found = search.answer(Query(a, b, duration, accuracy), low)
+    a, b = map(_triangle, pair.bodies, pair.trees, ids)
+    found = search.answer(Query(a, b, pair.duration, pair.accuracy), low)
     if found.status is Status.SEPARATED:
         return None
     assert found.time_bounds is not None

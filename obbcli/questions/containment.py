@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.answers.contact import Contact
+from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
 from obbcli.errors import MeshError
 from obbcli.mesh.topology import bad_seams
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
     from obbcli.answers.status import Inner
     from obbcli.mesh import Mesh
     from obbcli.motion.body import Body
-    from obbcli.questions.border import Trees
-
-Counts = tuple[int, int, int, int]
+    from obbcli.questions.pair_question import Trees
 
 
 class Containment:
@@ -56,7 +55,7 @@ class Containment:
         self._bodies = bodies
         self._trees = trees
         self._at_start = at_start
-        self._done: Counts = (0, 0, 0, 0)
+        self._done = Counts()
         self._inner: Inner = "a"
         self._points: NDArray[np.float64] | None = None
         self._query: kernels.ContainmentQuery | None = None
@@ -81,15 +80,13 @@ class Containment:
             elif self._inner == "b":
                 break
             else:
-                self._done, self._query, self._inner = self._query.counts(), None, "b"
+                self._done, self._query, self._inner = self.counts, None, "b"
         return True
 
     @property
     def counts(self) -> Counts:
-        """Box tests, triangle tests, exact ones and pops so far."""
-        done = self._done
-        now = (0, 0, 0, 0) if self._query is None else self._query.counts()
-        return done[0] + now[0], done[1] + now[1], done[2] + now[2], done[3] + now[3]
+        """What the search has cost so far, but for the question about t = 0."""
+        return self._done if self._query is None else self._done + Counts(*self._query.counts())
 
     def answer(self) -> Contact:
         """Return the contact at t = 0 of a body inside the other: no triangles, but a point."""

@@ -10,14 +10,16 @@ from obbcli.answers.collision import Collision
 from obbcli.answers.contact import Contact, FirstContact
 from obbcli.answers.status import Status
 from obbcli.answers.words import EVIDENCES, FEATURES
-from obbcli.questions.border import POPS_A_SLICE, limits_of, refused, trees_of
+from obbcli.questions.border import limits_of, refused
+from obbcli.questions.budget import POPS_A_SLICE
+from obbcli.questions.pair_question import trees_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from obbcli.answers.contact import Vector
     from obbcli.motion.body import Body
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
 
 _EXACT_LIMITS = limits_of(Accuracy())
 _SEPARATED = Contact(status=Status.SEPARATED)

@@ -6,23 +6,14 @@ import time
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.accuracy import Accuracy
 from obbcli.answers.distance import Distance
-from obbcli.motion.body import as_body
-from obbcli.questions.border import (
-    POPS_A_SLICE,
-    damaged,
-    limits_of,
-    out_of_range,
-    stats_of,
-    trees_of,
-)
+from obbcli.questions.border import damaged, limits_of, out_of_range, stats_of
+from obbcli.questions.budget import Budget
+from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
     from obbcli.motion.body import Body, Shape
-    from obbcli.questions.border import Trees
-
-_EXACT = Accuracy()
 
 
 def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None) -> Distance:
@@ -55,26 +46,21 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
         >>> distance("sample_meshes/housing.stl", "sample_meshes/board.vtk").bounds
         (0.049999999999971644, 0.049999999999999996)
     """
-    return measure(a, b, accuracy)[0]
+    return measure(PairQuestion.of(a, b, 0.0, accuracy))[0]
 
 
-def measure(
-    a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None
-) -> tuple[Distance, bool]:
+def measure(pair: PairQuestion) -> tuple[Distance, bool]:
     """Return what `distance` does, and whether it ended before `max_iterations` and `timeout`.
 
     Raises:
         ObbError: as `distance`.
         OSError: a file cannot be read.
     """
-    accuracy = _EXACT if accuracy is None else accuracy
-    bodies = as_body(a), as_body(b)
+    trees = pair.trees
     start = time.perf_counter()
-    trees = trees_of(bodies)
-    loaded = time.perf_counter()
     try:
-        query = _query(trees, bodies, accuracy)
-        is_complete = _run(query, accuracy)
+        query = _query(pair)
+        is_complete = _run(query, pair.accuracy)
         low, high, point_a, point_b, triangle_a, triangle_b, counts = query.answer()
     except ValueError as fault:
         raise out_of_range(trees, "pose", fault) from fault
@@ -88,15 +74,15 @@ def measure(
         triangle_a=triangle_a,
         triangle_b=triangle_b,
         stats=stats_of(
-            trees, counts, {"load": loaded - start, "query": time.perf_counter() - loaded}
+            trees, counts, {"load": pair.load_seconds, "query": time.perf_counter() - start}
         ),
     )
     return answer, is_complete
 
 
-def _query(trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy) -> kernels.DistanceQuery:
+def _query(pair: PairQuestion) -> kernels.DistanceQuery:
     """Return the kernels' query, not yet advanced."""
-    (tree_a, tree_b), (a, b) = trees, bodies
+    (tree_a, tree_b), (a, b), accuracy = pair.trees, pair.bodies, pair.accuracy
     return kernels.DistanceQuery(
         tree_a.kernel,
         a.pose.kernel,
@@ -108,10 +94,11 @@ def _query(trees: Trees, bodies: tuple[Body, Body], accuracy: Accuracy) -> kerne
 
 def _run(query: kernels.DistanceQuery, accuracy: Accuracy) -> bool:
     """Advance a query to its end or to a limit of `accuracy`; return whether it ended."""
-    left = accuracy.max_iterations
-    stop = None if accuracy.timeout is None else time.perf_counter() + accuracy.timeout
-    while not query.advance(min(POPS_A_SLICE, left)):
-        left = accuracy.max_iterations - query.pops
-        if left <= 0 or (stop is not None and time.perf_counter() >= stop):
+    budget = Budget(accuracy.max_iterations, accuracy.timeout).start()
+    before = 0
+    while not query.advance(budget.slice()):
+        budget.spend(query.pops - before)
+        before = query.pops
+        if budget.is_over:
             return False
     return True

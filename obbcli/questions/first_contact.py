@@ -7,45 +7,56 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from obbcli import kernels
-from obbcli.accuracy import Accuracy
-from obbcli.answers.contact import Contact, FirstContact
-from obbcli.answers.status import Status
+from obbcli.answers.contact import FirstContact
+from obbcli.answers.counts import Counts
 from obbcli.motion.body import as_body
-from obbcli.questions.border import (
-    POPS_A_SLICE,
-    damaged,
-    duration_of,
-    moves_nothing,
-    moving_query,
-    static_query,
-    stats_of,
-    time_tolerance,
-    trees_of,
-)
+from obbcli.questions.border import damaged, static_query, stats_of
+from obbcli.questions.budget import Budget
 from obbcli.questions.containment import Containment
-from obbcli.questions.describe import (
-    answer_at_rest,
-    boxes_at_start,
-    contact_at_start,
-    contact_of,
-    unresolved,
-)
-from obbcli.questions.legs.relay import sum_of
-from obbcli.questions.legs.sampled import SampledQueries
-from obbcli.questions.legs.through_poses import LegQueries, legs_of
+from obbcli.questions.describe import answer_at_rest
+from obbcli.questions.legs.sampled import SampledQuery
+from obbcli.questions.legs.through_poses import PathQuery, legs_of
+from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.steady import SteadyQuery
 
 if TYPE_CHECKING:
-    from obbcli.answers.counts import QueryStats
+    from obbcli.accuracy import Accuracy
+    from obbcli.answers.contact import Contact
     from obbcli.motion.body import Body, Shape
-    from obbcli.questions.legs.relay import Asker, Counts, Relay
 
-_EXACT = Accuracy()
-_SEPARATED = Contact(status=Status.SEPARATED)
+
+class _Search(Protocol):
+    """How the first contact of one kind of motion is looked for."""
+
+    @property
+    def lower_bound(self) -> float:
+        """No contact in [0, lower_bound): proven. s."""
+
+    @property
+    def time(self) -> float:
+        """Up to when the search has come, s."""
+
+    @property
+    def counts(self) -> Counts:
+        """What the search has cost so far."""
+
+    def step(self, pops: int, until: float) -> bool:
+        """Go on for so many pops, no further than `until`, s; return whether all is answered."""
+
+    def contact(self) -> Contact:
+        """Return what is known now."""
+
+
+def _search_of(pair: PairQuestion, *, any_contact: bool) -> _Search:
+    """Return the search that suits the motions and the method of a question."""
+    if pair.accuracy.method == "sampled" and not pair.is_at_rest:
+        return SampledQuery(pair, any_contact=any_contact)
+    if pair.is_steady:
+        return SteadyQuery(pair, any_contact=any_contact)
+    return PathQuery(pair, any_contact=any_contact)
 
 
 class Query:
@@ -94,38 +105,41 @@ class Query:
         solid: bool = False,
         any_contact: bool = False,
     ) -> None:
-        self._accuracy = _EXACT if accuracy is None else accuracy
-        self._bodies = as_body(a), as_body(b)
-        self._follows_path = any(body.motion.steady is None for body in self._bodies)
-        self._duration = duration_of(duration, self._bodies)
+        pair = PairQuestion.of(a, b, duration, accuracy)
+        self._set_up(pair, solid=solid, any_contact=any_contact)
+
+    @classmethod
+    def about(cls, pair: PairQuestion, *, solid: bool = False, any_contact: bool = False) -> Query:
+        """Return the query that asks a question which is understood already.
+
+        Raises:
+            ObbError: as the class says.
+        """
+        query = cls.__new__(cls)
+        query._set_up(pair, solid=solid, any_contact=any_contact)
+        return query
+
+    def _set_up(self, pair: PairQuestion, *, solid: bool, any_contact: bool) -> None:
         start = time.perf_counter()
-        self._trees = trees_of(self._bodies)
-        loaded = time.perf_counter()
-        placed = self._bodies
-        if self._follows_path:
-            placed = next(legs_of(self._bodies, self._trees, 0.0)).bodies
-        self._at_start = static_query(self._trees, placed, self._accuracy)
-        self._solids = Containment(placed, self._trees, self._at_start) if solid else None
-        self._seconds = {"load": loaded - start, "query": time.perf_counter() - loaded}
-        self._moving: kernels.ContactQuery | None = None
-        self._legs = self._relay(partial(Query, any_contact=any_contact))
-        self._any_contact = any_contact
+        self._pair = pair
+        self._search = _search_of(pair, any_contact=any_contact)
+        self._solids: Containment | None = None
+        # The question about t = 0 that the search does not ask itself.
+        self._at_start: kernels.StaticQuery | None = None
+        if solid:
+            self._solids = self._containment()
+        self._seconds = {"load": pair.load_seconds, "query": time.perf_counter() - start}
         self._is_finished = False
         self._spent = 0
 
-    def _relay(self, ask: Asker) -> Relay | None:
-        """Return what asks one question after another, where one is not enough."""
-        bodies, end = self._bodies, self._duration
-        tolerance = time_tolerance(self._accuracy, end)
-        is_sampled = self._accuracy.method == "sampled" and end > 0
-        if is_sampled and not all(body.motion.is_at_rest for body in bodies):
-            accuracy = replace(self._accuracy, time_tolerance=tolerance)
-            return SampledQueries(bodies, self._trees, end, accuracy, ask)
-        if not self._follows_path:
-            return None
-        # A bracket may consist of two: of the time the bodies are near, and of contact.
-        exact = replace(self._accuracy, time_tolerance=0.5 * tolerance)
-        return LegQueries(bodies, self._trees, end, exact, ask)
+    def _containment(self) -> Containment:
+        """Return the question whether a part of one body is inside the other at t = 0."""
+        pair = self._pair
+        if isinstance(self._search, SteadyQuery):
+            return Containment(pair.bodies, pair.trees, self._search.at_start)
+        placed = next(legs_of(pair._replace(duration=0.0))).question(pair)
+        self._at_start = static_query(placed)
+        return Containment(placed.bodies, pair.trees, self._at_start)
 
     @property
     def is_finished(self) -> bool:
@@ -135,14 +149,12 @@ class Query:
     @property
     def lower_bound(self) -> float:
         """No contact in [0, lower_bound): proven. s."""
-        if self._legs is not None:
-            return self._legs.lower_bound
-        return 0.0 if self._moving is None else self._moving.lower_bound
+        return self._search.lower_bound
 
     @property
     def time(self) -> float:
         """Up to when the question has come, s: `lower_bound`, or the present sampled step."""
-        return self.lower_bound if self._legs is None else self._legs.time
+        return self._search.time
 
     @property
     def iterations(self) -> int:
@@ -152,7 +164,15 @@ class Query:
     @property
     def duration(self) -> float:
         """The end of the interval asked about, s."""
-        return self._duration
+        return self._pair.duration
+
+    @property
+    def counts(self) -> Counts:
+        """What the searches have cost so far."""
+        counts = self._search.counts
+        if self._solids is not None:
+            counts += self._solids.counts
+        return counts if self._at_start is None else counts + Counts(*self._at_start.counts())
 
     def advance(
         self,
@@ -179,86 +199,36 @@ class Query:
             TreeFileError: a tree file is damaged.
         """
         start = time.perf_counter()
-        stop = None if seconds is None else start + seconds
-        left = max_iterations
+        budget = Budget(max_iterations, seconds).start()
         try:
             while not self._is_finished and self.time <= until:
-                pops = POPS_A_SLICE if left is None else min(left, POPS_A_SLICE)
-                before = self.counts[3]
-                self._is_finished = self._step(pops, until)
-                spent = max(self.counts[3] - before, 1)
+                before = self.counts.pops
+                self._is_finished = self._step(budget.slice(), until)
+                spent = max(self.counts.pops - before, 1)
                 self._spent += spent
-                if left is not None:
-                    left = max(left - spent, 0)
-                if left == 0 or (stop is not None and time.perf_counter() >= stop):
+                budget.spend(spent)
+                if budget.is_over:
                     break
         except kernels.TreeError as fault:
-            raise damaged(self._trees, fault) from fault
+            raise damaged(self._pair.trees, fault) from fault
         finally:
             self._seconds["query"] += time.perf_counter() - start
         return self._answer()
 
     def _step(self, pops: int, until: float) -> bool:
-        """Advance the question at t = 0, then the moving one; return whether all is answered."""
+        """Advance the question about solids, then the search; return whether all is answered."""
         if self._solids is not None:
             if not self._solids.advance(pops):
                 return False
             if self._solids.contained is not None:
                 return True
-        if self._legs is not None:
-            return self._legs.step(pops, until)
-        if self._moving is None:
-            before = self._at_start.counts()[3]
-            if not self._at_start.advance(pops):
-                return False
-            if self._at_start.is_contact or self._is_over_at_start():
-                return True
-            self._moving = self._moving_query()
-            pops -= self._at_start.counts()[3] - before
-        return self._moving.advance(pops, until)
-
-    def _is_over_at_start(self) -> bool:
-        """Return whether what holds at t = 0 holds throughout."""
-        is_still = moves_nothing(self._bodies, self._trees, self._duration)
-        return is_still and not self._accuracy.clearance > 0
-
-    def _moving_query(self) -> kernels.ContactQuery:
-        ask = partial(moving_query, any_contact=self._any_contact)
-        return ask(self._bodies, self._trees, self._duration, self._accuracy)
+        return self._search.step(pops, until)
 
     def _answer(self) -> FirstContact:
-        if self._solids is not None and self._solids.contained is not None:
-            return FirstContact.of(self._solids.answer(), self._stats())
-        if self._legs is not None:
-            return self._legs.answer(self._stats())
-        return FirstContact.of(self._contact(), self._stats())
-
-    def _contact(self) -> Contact:
-        if self._at_start.is_by_boxes:
-            query, bound = self._moving_query(), self._at_start.error_bound
-            return boxes_at_start(query, bound, self._accuracy.clearance)
-        witness = self._at_start.witness()
-        if witness is not None:
-            return contact_at_start(self._bodies, self._trees, *witness)
-        if not self._is_finished or (self._moving is not None and self._moving.has_given_up):
-            return unresolved(self.lower_bound)
-        found = None if self._moving is None else self._moving.contact()
-        if self._moving is None or found is None:
-            return _SEPARATED
-        return contact_of(self._moving, found, self._accuracy.clearance)
-
-    @property
-    def counts(self) -> Counts:
-        """Box tests, triangle tests, exact ones and pops so far."""
-        counts = self._at_start.counts()
-        if self._solids is not None:
-            counts = sum_of(counts, self._solids.counts)
-        if self._legs is not None:
-            return sum_of(counts, self._legs.counts)
-        return counts if self._moving is None else sum_of(counts, self._moving.counts())
-
-    def _stats(self) -> QueryStats:
-        return stats_of(self._trees, self.counts, dict(self._seconds))
+        solids = self._solids
+        is_contained = solids is not None and solids.contained is not None
+        found = solids.answer() if solids and is_contained else self._search.contact()
+        return FirstContact.of(found, stats_of(self._pair.trees, self.counts, dict(self._seconds)))
 
 
 def first_contact(
@@ -301,6 +271,6 @@ def first_contact(
         here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
         if here is not None and there is not None:
             return answer_at_rest((as_body(a), as_body(b)), here, there)
-    accuracy = _EXACT if accuracy is None else accuracy
-    query = Query(a, b, duration, accuracy, solid=solid)
-    return query.advance(accuracy.max_iterations, accuracy.timeout)
+    pair = PairQuestion.of(a, b, duration, accuracy)
+    query = Query.about(pair, solid=solid)
+    return query.advance(pair.accuracy.max_iterations, pair.accuracy.timeout)

@@ -6,22 +6,22 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
+from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
 from obbcli.errors import UnresolvedError
-from obbcli.questions.border import POPS_A_SLICE, damaged
-from obbcli.questions.legs.relay import on_clock, sum_of
+from obbcli.questions.border import damaged
+from obbcli.questions.budget import Budget
+from obbcli.questions.legs.leg import on_clock
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from obbcli.answers.contact import FirstContact
-    from obbcli.questions.border import Trees
     from obbcli.questions.first_contact import Query
-    from obbcli.questions.legs.relay import Counts
+    from obbcli.questions.pair_question import Trees
 
 
 class Search:
@@ -43,11 +43,9 @@ class Search:
         progress: Callable[[float], object] | None = None,
     ) -> None:
         self.end = end
-        self.counts: Counts = (0, 0, 0, 0)
-        """Box tests, triangle tests, exact ones and pops so far."""
-        self._left = pops
-        self._seconds = math.inf if seconds is None else seconds
-        self._stop: float | None = None
+        self.counts = Counts()
+        """What the search has cost so far."""
+        self._budget = Budget(pops, seconds)
         self._progress = progress
 
     def found(
@@ -76,12 +74,12 @@ class Search:
             if is_finished:
                 break
             self._look(proven)
-            before = query.counts()
+            before = Counts(*query.counts())
             try:
-                is_finished = query.advance(min(self._left, POPS_A_SLICE))
+                is_finished = query.advance(self._budget.slice())
             except kernels.TreeError as fault:
                 raise damaged(trees, fault) from fault
-            self._count(query.counts(), before)
+            self._count(Counts(*query.counts()) - before)
         if query.has_given_up:
             raise _unresolved(
                 "bodies turn too fast to be followed", proven, "ask about a shorter duration"
@@ -97,34 +95,27 @@ class Search:
         Raises:
             UnresolvedError: a limit was reached.
         """
-        found = query.advance(self._left, self._look(proven))
-        stats = found.stats
-        self._count((stats.box_tests, stats.triangle_tests, stats.exact_triangle_tests, stats.pops))
+        self._look(proven)
+        found = query.advance(self._budget.pops_left, self._budget.seconds_left)
+        self._count(found.stats.counts)
         if found.status is Status.UNRESOLVED:
             raise _at_limit(proven)
         return found
 
-    def _look(self, proven: float) -> float:
-        """Say how far the search has come, and return the seconds left to it.
+    def _look(self, proven: float) -> None:
+        """Say how far the search has come.
 
         Raises:
             UnresolvedError: no pops or no seconds are left.
         """
         if self._progress is not None:
             self._progress(proven)
-        now = time.perf_counter()
-        if self._stop is None:
-            self._stop = now + self._seconds
-        if self._left <= 0 or now >= self._stop:
+        if self._budget.is_over:
             raise _at_limit(proven)
-        return self._stop - now
 
-    def _count(self, counts: Counts, before: Counts = (0, 0, 0, 0)) -> None:
-        boxes, triangles, exact, pops = (
-            now - then for now, then in zip(counts, before, strict=True)
-        )
-        self.counts = sum_of(self.counts, (boxes, triangles, exact, pops))
-        self._left -= pops
+    def _count(self, spent: Counts) -> None:
+        self.counts += spent
+        self._budget.spend(spent.pops)
 
 
 def _at_limit(proven: float) -> UnresolvedError:

@@ -12,7 +12,8 @@ import numpy as np
 from obbcli import kernels
 from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, as_body
-from obbcli.questions.border import NO_LIMIT, placed_of, refused, trees_of, whole_limit
+from obbcli.questions.border import NO_LIMIT, placed_of, refused, whole_limit
+from obbcli.questions.pair_question import trees_of
 from obbcli.threads import thread_count
 from obbcli.tree.tree import ObbTree
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.motion.body import Shape
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
 
 _FEW = 4  # a block as much smaller than it may be is followed by one of twice the rows
 

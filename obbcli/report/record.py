@@ -87,17 +87,15 @@ def answer_document(command: str, setting: Setting, result: Record, stats: Query
     )
 
 
-def motion_part(bodies: tuple[Body, Body], duration: float | None) -> Record:
+def motion_part(bodies: tuple[Body, Body], duration: float) -> Record:
     """Return the motion as understood: poses and pivots in world coordinates, or paths.
 
     Args:
         bodies: A and B; their shapes are trees or meshes.
-        duration: s; None for the default.
+        duration: s, as resolved.
     """
-    from obbcli.questions.border import duration_of
-
     a, b = bodies
-    return {"duration": duration_of(duration, bodies), "a": body_part(a), "b": body_part(b)}
+    return {"duration": duration, "a": body_part(a), "b": body_part(b)}
 
 
 def body_part(body: Body) -> Record:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import heapq
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError, UnresolvedError
-from obbcli.questions.border import time_tolerance
 from obbcli.questions.contacts import search_contacts
 from obbcli.questions.describe import unresolved
-from obbcli.questions.legs.relay import sum_of
+from obbcli.questions.pair_question import PairQuestion, time_tolerance
 from obbcli.questions.search import Search
 from obbcli.scene.candidates import earliest
 from obbcli.scene.contact_stream import Course
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from obbcli.answers.contact import Contact
-    from obbcli.questions.legs.relay import Counts
     from obbcli.scene.pairs import Asked
 
 
@@ -65,7 +64,7 @@ class AllContacts(Course):
         self._listings: list[_Listing] = []
         self._left = limit
         self._tolerance = time_tolerance(asked.accuracy, asked.duration)
-        self._counts: Counts = (0, 0, 0, 0)
+        self._counts = Counts()
 
     @property
     def time(self) -> float:
@@ -139,7 +138,8 @@ class AllContacts(Course):
         a, b = self.asked.pair_of(first)
         duration, accuracy = self.asked.duration, self.asked.accuracy
         search = Search(accuracy.max_iterations, self._firsts.seconds_left())
-        rest = search_contacts(self.asked.bodies_of(a, b), duration, accuracy, search)
+        pair = PairQuestion.of(*self.asked.bodies_of(a, b), duration, accuracy)
+        rest = search_contacts(pair, search)
         low = earliest(first.time, self._tolerance)
         heapq.heappush(self._listings, _Listing(low, a, b, None, rest, search))
 
@@ -157,10 +157,7 @@ class AllContacts(Course):
             self._end(listing, listing.time)
             raise
         finally:
-            boxes, triangles, exact, pops = (
-                now - then for now, then in zip(listing.search.counts, before, strict=True)
-            )
-            self._counts = sum_of(self._counts, (boxes, triangles, exact, pops))
+            self._counts += listing.search.counts - before
         if contact is None:
             heapq.heappop(self._listings)
             return

@@ -9,7 +9,7 @@ import numpy as np
 
 from obbcli import kernels
 from obbcli.errors import SceneError
-from obbcli.questions.border import time_tolerance
+from obbcli.questions.pair_question import time_tolerance
 from obbcli.scene.swept_boxes import MARGIN, swept_boxes
 from obbcli.spelling import nearest
 

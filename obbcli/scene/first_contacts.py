@@ -7,16 +7,16 @@ The smallest is taken and its question advanced. A pair that nobody reaches cost
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from obbcli.answers.contact import Contact
+from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError
+from obbcli.questions.budget import Budget
 from obbcli.questions.describe import unresolved
 from obbcli.questions.first_contact import Query
-from obbcli.questions.legs.relay import sum_of
 from obbcli.scene.contact_stream import Course
 from obbcli.scene.pair_queue import Agenda, Item
 from obbcli.scene.results import SceneContact, SceneStats
@@ -24,7 +24,6 @@ from obbcli.scene.results import SceneContact, SceneStats
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
-    from obbcli.questions.legs.relay import Counts
     from obbcli.scene.pairs import Asked
 
 # Queue pops of a question before another may be turned to: the least for which turning costs
@@ -55,8 +54,8 @@ class FirstContacts(Course):
         self._best = math.inf  # when a contact is known, s
         self._is_stopped = False
         self._is_over = False
-        self._deadline: float | None = None
-        self._counts: Counts = (0, 0, 0, 0)
+        self._budget = Budget(seconds=asked.accuracy.timeout)
+        self._counts = Counts()
         self._ends = dict.fromkeys(Status, 0)
 
     @property
@@ -108,11 +107,7 @@ class FirstContacts(Course):
 
     def is_late(self) -> bool:
         """Return whether no more time may be spent."""
-        timeout = self._accuracy.timeout
-        if timeout is not None and not self._is_stopped:
-            now = time.perf_counter()
-            self._deadline = now + timeout if self._deadline is None else self._deadline
-            self._is_stopped = now >= self._deadline
+        self._is_stopped = self._is_stopped or self._budget.is_over
         return self._is_stopped
 
     def _go_on(self, item: Item) -> None:
@@ -128,8 +123,7 @@ class FirstContacts(Course):
         except MotionError as fault:
             where = f"{' and '.join(self.asked.names(item.a, item.b))}: {fault.where}"
             raise MotionError(where, fault.fault, fault.remedy) from fault
-        spent = (now - then for now, then in zip(query.counts, before, strict=True))
-        self._counts = sum_of(self._counts, tuple(spent))  # type: ignore[arg-type]  # four of them
+        self._counts += query.counts - before
         if found is None:
             self._agenda.put(item._replace(time=max(item.time, query.time), work=query))
         else:
@@ -155,7 +149,7 @@ class FirstContacts(Course):
 
     def seconds_left(self) -> float | None:
         """Return how much time may be spent, s; None: no limit."""
-        return None if self._deadline is None else max(self._deadline - time.perf_counter(), 0.0)
+        return self._budget.seconds_left
 
     def _close(self, item: Item, found: Contact) -> None:
         """Note the end of a question."""

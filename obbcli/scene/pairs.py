@@ -12,8 +12,8 @@ from obbcli.scene.results import SceneContact, SceneStats
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from obbcli.answers.counts import Counts
     from obbcli.motion.body import Body
-    from obbcli.questions.legs.relay import Counts
     from obbcli.scene.candidates import Candidates
     from obbcli.scene.scene import Scene
     from obbcli.scene.shapes import Shapes

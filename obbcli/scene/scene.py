@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import SceneError
-from obbcli.questions.border import duration_of, whole_limit
+from obbcli.questions.border import whole_limit
+from obbcli.questions.pair_question import duration_of
 from obbcli.scene.bodies import as_bodies, as_ignored
 from obbcli.scene.first_contacts import FirstContacts
 from obbcli.scene.pairs import Asked

@@ -9,9 +9,10 @@ import numpy as np
 from obbcli import kernels
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.motion.body import Body
-from obbcli.questions.border import limits_of, out_of_range, refused, time_tolerance
+from obbcli.questions.border import limits_of, out_of_range, refused
 from obbcli.questions.describe import contact_at_start
 from obbcli.questions.first_contact import first_contact
+from obbcli.questions.pair_question import time_tolerance
 from obbcli.sweeps.answer_rows import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
     from obbcli.motion.pose import Pose
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.answer_rows import Answers
 
     Floats = NDArray[np.float64]

@@ -26,7 +26,7 @@ from obbcli.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.result_lines import Block
     from obbcli.sweeps.row_fields import Row
     from obbcli.sweeps.row_questions import Setting

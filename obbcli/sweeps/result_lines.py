@@ -13,7 +13,7 @@ from obbcli.sweeps.row_questions import answer_questions, question_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.row_fields import Row
     from obbcli.sweeps.row_questions import Question, Setting
 

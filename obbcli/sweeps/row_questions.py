@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.row_fields import Values, Vector
 
 _NOTHING: Vector = (0.0, 0.0, 0.0)

@@ -11,7 +11,7 @@ from obbcli.sweeps.result_lines import answer_rows
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.result_lines import Block
     from obbcli.sweeps.row_fields import Row
     from obbcli.sweeps.row_questions import Setting

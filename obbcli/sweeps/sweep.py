@@ -11,7 +11,7 @@ from obbcli.arrays import as_floats
 from obbcli.errors import MotionError
 from obbcli.motion.body import Body, as_body, pivot_of
 from obbcli.motion.motion import Motion
-from obbcli.questions.border import duration_of, trees_of
+from obbcli.questions.pair_question import duration_of, trees_of
 from obbcli.sweeps.answer_rows import RAW, as_rows
 from obbcli.sweeps.batch import Batch, Outcome, answer_batch, answer_one_by_one
 from obbcli.threads import thread_count
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from obbcli.errors import ObbError
     from obbcli.motion.body import Shape
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.answer_rows import Answers
 
     Floats = NDArray[np.float64]

@@ -9,7 +9,6 @@ import numpy as np
 from obbcli.answers.status import Status
 from obbcli.mesh.measure import diagonal
 from obbcli.motion.body import pose_at
-from obbcli.questions.border import duration_of
 from obbcli.view.marks import normal_mark, point_mark
 from obbcli.view.picture import VIEWS, Lines, Picture, Surface, bounds_of
 
@@ -47,19 +46,19 @@ class Moment(NamedTuple):
 
 
 def moment_of(
-    bodies: tuple[Body, Body], answer: FirstContact, duration: float | None, ghosts: int
+    bodies: tuple[Body, Body], answer: FirstContact, duration: float, ghosts: int
 ) -> Moment:
     """Return what is drawn of an answer.
 
     Args:
         bodies: A and B.
         answer: about them.
-        duration: s, as asked; None for the default.
+        duration: s, as resolved.
         ghosts: how many are drawn between the start and the end of the way.
     """
     time = answer.time
     if answer.status is Status.SEPARATED or time is None:
-        time = duration_of(duration, bodies)
+        time = duration
     names = ("A", "B")
     moving = [
         n for n, body in zip(names, bodies, strict=True) if time > 0 and not body.motion.is_at_rest

@@ -84,7 +84,7 @@ TURNING = ("--omega", "0", "0", "3", "--omega-b", "0", "0", "-5.9", "--duration"
 @pytest.mark.parametrize("command", ["collide", "first-contact"])
 def test_long_question_shows_the_time_proven_so_far(monkeypatch, obbtree, command, words, is_drawn):
     monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
-    monkeypatch.setattr("obbcli.questions.border.POPS_A_SLICE", 1024)
+    monkeypatch.setattr("obbcli.questions.budget.POPS_A_SLICE", 1024)
 
     with redirect_stderr(Terminal()) as terminal:
         ended = obbtree(command, *GEARS, *TURNING, *words)
@@ -105,7 +105,7 @@ def test_short_question_shows_no_bar(monkeypatch, obbtree):
 
 def test_bar_changes_no_answer(monkeypatch, obbtree):
     monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
-    monkeypatch.setattr("obbcli.questions.border.POPS_A_SLICE", 1024)
+    monkeypatch.setattr("obbcli.questions.budget.POPS_A_SLICE", 1024)
     plain = obbtree("first-contact", *GEARS, *TURNING, "--json", "--max-iterations", 9_000).json
 
     with redirect_stderr(Terminal()):
@@ -119,7 +119,7 @@ def test_bar_changes_no_answer(monkeypatch, obbtree):
 
 def test_long_list_shows_the_time_before_which_it_is_known(monkeypatch, obbtree):
     monkeypatch.setattr("obbcli.cli.progress.PATIENCE", 0.0)
-    monkeypatch.setattr("obbcli.questions.search.POPS_A_SLICE", 1024)
+    monkeypatch.setattr("obbcli.questions.budget.POPS_A_SLICE", 1024)
 
     with redirect_stderr(Terminal()) as terminal:
         listed = obbtree("first-contact", *GEARS, *TURNING, "--all-contacts")

@@ -13,6 +13,7 @@ import pytest
 
 from obbcli import Body, Mesh, MeshError, Motion, ObbError, Pose, __version__
 from obbcli.files import stamp_of
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.report.document import to_json
 from obbcli.report.record import document, error_document, file_sha256, finite, motion_part
 from obbcli.report.table import Table, count, draw, length, seconds, size
@@ -28,10 +29,16 @@ def test_document_names_its_schema_and_tool_first():
     assert record["tool_version"] == __version__
 
 
+def part_of(a, b, duration=None):
+    """Return what a record says of the motion of a question."""
+    pair = PairQuestion.of(a, b, duration)
+    return motion_part(pair.bodies, pair.duration)
+
+
 def test_motion_reports_the_posed_centroid_as_pivot():
     body = Body(SQUARE, Pose((0, 0, math.pi / 2), (10, 0, 0)), Motion((1, 0, 0)))
 
-    part = motion_part((body, Body(SQUARE)), None)
+    part = part_of(body, Body(SQUARE))
 
     np.testing.assert_allclose(part["a"]["pivot"], [9, 1, 0], atol=1e-15)
     assert part["b"]["pivot"] == [1.0, 1.0, 0.0]
@@ -41,14 +48,14 @@ def test_motion_reports_the_posed_centroid_as_pivot():
 def test_motion_reports_a_given_pivot_as_it_is():
     body = Body(SQUARE, Pose(translation=(10, 0, 0)), Motion(pivot=(5, 6, 7)))
 
-    assert motion_part((body, body), 2)["a"]["pivot"] == [5.0, 6.0, 7.0]
+    assert part_of(body, body)["a"]["pivot"] == [5.0, 6.0, 7.0]
 
 
 def test_motion_reports_a_path_as_its_poses():
     poses = [Pose(translation=(0, 0, 1)), Pose((0, 0, math.pi / 2), (2, 0, 0))]
     body = Body(SQUARE, motion=Motion.through([0, 2.5], poses))
 
-    part = motion_part((body, Body(SQUARE)), None)
+    part = part_of(body, Body(SQUARE))
 
     first, last = (
         {"rotation": pose.rotation.tolist(), "translation": pose.translation.tolist()}
@@ -66,7 +73,7 @@ def test_motion_reports_a_path_as_its_poses():
 def test_duration_defaults_to_one_where_a_body_moves(velocity, duration, used):
     bodies = Body(SQUARE), Body(SQUARE, motion=Motion(velocity))
 
-    assert motion_part(bodies, duration)["duration"] == used
+    assert part_of(*bodies, duration)["duration"] == used
 
 
 def test_error_document_tells_place_fault_and_remedy_apart():

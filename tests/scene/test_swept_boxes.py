@@ -11,8 +11,8 @@ from random_scenes import CUBE, MESHES, random_motion
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
 from obbcli.motion.path import PathMotion
-from obbcli.questions.border import trees_of
 from obbcli.questions.legs.steps import steps_of
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.scene.swept_boxes import SweptBoxes, swept_boxes
 
 if TYPE_CHECKING:
@@ -182,9 +182,9 @@ def test_boxes_hold_sampled_bodies(seed: int, integrator: str) -> None:
     body = Body(bar, pose, motion)
     sampled = {"method": "sampled", "steps": 40, "integrator": integrator}
     low, high, velocity = np.split(boxes_of(body, **sampled).boxes[0], 3)
-    pair = body, Body(bar)
+    pair = PairQuestion.of(body, Body(bar), 1.0, Accuracy(**sampled))
 
-    legs = list(steps_of(pair, trees_of(pair), 1.0, Accuracy(**sampled)))
+    legs = list(steps_of(pair))
 
     assert len(legs) in (1, 40)
     for leg in legs if len(legs) == 40 else []:

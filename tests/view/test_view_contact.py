@@ -21,6 +21,7 @@ from obbcli import (
     Status,
     first_contact,
 )
+from obbcli.questions.pair_question import duration_of
 from obbcli.view.contact import contact_picture, moment_of
 from obbcli.view.gltf import glb_bytes
 
@@ -37,7 +38,7 @@ def sample(name, pose=None, motion=None):
 def drawn(bodies, ghosts=2, duration=None, accuracy=None, **options):
     """Return answer, moment and picture."""
     answer = first_contact(*bodies, duration, accuracy or Accuracy(), **options)
-    moment = moment_of(bodies, answer, duration, ghosts)
+    moment = moment_of(bodies, answer, duration_of(duration, bodies), ghosts)
     return answer, moment, contact_picture(bodies, answer, moment, "")
 
 

@@ -53,7 +53,7 @@ def page_of(scale=1.0, direction=(1.0, 1.0, 1.0)):
     tree = ObbTree.build(Mesh(scale * np.array(vertices, float), triangles))
     bodies = Body(tree), Body(tree, Pose(translation=(0, 0, 1.5 * scale)), Motion((0, 0, -scale)))
     answer = first_contact(*bodies)
-    picture = contact_picture(bodies, answer, moment_of(bodies, answer, None, 2), "a <b> & c")
+    picture = contact_picture(bodies, answer, moment_of(bodies, answer, 1.0, 2), "a <b> & c")
     picture = seen_from(picture, direction)
     return html_page(picture, ["first line", "<script>alert(1)</script>"]).decode()
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from obbcli.cli.options.placement import Question
     from obbcli.cli.options.two_bodies import Asked
     from obbcli.motion.body import Body
+    from obbcli.questions.pair_question import PairQuestion
     from obbcli.report.record import Record
 
 
@@ -82,7 +83,7 @@ def command(asked: Asked, **flags: Any) -> int:
     with naming_options(question):
         record = _ask(asked, question, files, flags)
     if flags["all_pairs"] and _streams(asked.common, flags):
-        write_pieces(_lines(question.bodies(files)))
+        write_pieces(_lines(question.pair(files).bodies))
     else:
         _show(record, asked.common)
     return exit_code(record["result"], asked=asked.exit_code)
@@ -124,28 +125,25 @@ def _ask(
     """Put the question and return its record."""
     from obbcli.report.collide import collide_record
 
-    bodies = question.bodies(files)
-    shows_progress = asked.common.shows_progress
-    answer = _answer(question, bodies, solid=flags["solid"], progress=shows_progress)
+    pair = question.pair(files)
+    answer = _answer(pair, solid=flags["solid"], progress=asked.common.shows_progress)
     pairs = None
     if flags["all_pairs"] and not _streams(asked.common, flags):
-        pairs = _pairs(bodies, flags["limit"], flags["max_memory"])
-    record = collide_record(asked.setting(files, bodies, question, flags["solid"]), answer, pairs)
+        pairs = _pairs(pair.bodies, flags["limit"], flags["max_memory"])
+    record = collide_record(asked.setting(files, pair, flags["solid"]), answer, pairs)
     return with_load_time(record, files)
 
 
-def _answer(
-    question: Question, bodies: tuple[Body, Body], *, solid: bool, progress: bool
-) -> Collision:
+def _answer(pair: PairQuestion, *, solid: bool, progress: bool) -> Collision:
     """Return what `obbcli.collide` says; a moving question can be watched and interrupted."""
-    from obbcli.questions.collide import collide, collision_of
+    from obbcli.questions.collide import collide_pair, collision_of
 
-    if not question.moves:
-        return collide(*bodies, question.duration, question.accuracy, solid)
+    if pair.is_at_rest:
+        return collide_pair(pair, solid=solid)
     from obbcli.questions.first_contact import Query
 
-    query = Query(*bodies, question.duration, question.accuracy, solid=solid, any_contact=True)
-    return collision_of(run(query, question.accuracy, progress=progress))
+    query = Query.about(pair, solid=solid, any_contact=True)
+    return collision_of(run(query, pair.accuracy, progress=progress))
 
 
 def _pairs(

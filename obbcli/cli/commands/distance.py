@@ -77,9 +77,9 @@ def _ask(asked: Asked, question: Question, files: tuple[Input, Input]) -> Record
     from obbcli.questions.distance import measure
     from obbcli.report.distance import distance_record
 
-    bodies = question.bodies(files)
-    answer, is_complete = measure(*bodies, question.accuracy)
-    setting = asked.setting(files, bodies, question)
+    pair = question.pair(files)
+    answer, is_complete = measure(pair)
+    setting = asked.setting(files, pair)
     record = distance_record(setting, answer, is_complete=is_complete)
     return with_load_time(record, files)
 

@@ -83,21 +83,20 @@ def _ask(
     from obbcli.questions.first_contact import Query
     from obbcli.report.first_contact import first_contact_record
 
-    bodies = question.bodies(files)
-    query = Query(*bodies, question.duration, question.accuracy, solid=flags["solid"])
-    answer = run(query, question.accuracy, progress=asked.common.shows_progress)
+    pair = question.pair(files)
+    query = Query.about(pair, solid=flags["solid"])
+    answer = run(query, pair.accuracy, progress=asked.common.shows_progress)
     listing = None
     if flags["all_contacts"] or flags["limit"] is not None:
         listing, stats = list_contacts(
-            bodies,
-            question,
+            pair,
             answer,
             flags["limit"],
             is_patch=flags["all_contacts"],
             progress=asked.common.shows_progress,
         )
         answer = replace(answer, stats=stats)
-    setting = asked.setting(files, bodies, question, flags["solid"])
+    setting = asked.setting(files, pair, flags["solid"])
     return with_load_time(first_contact_record(setting, answer, listing), files)
 
 

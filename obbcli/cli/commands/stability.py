@@ -66,10 +66,10 @@ def command(asked: Asked, plot: str | None) -> int:
     with naming_options(question):
         from obbcli.study.stability.battery import Battery
 
-        bodies = question.bodies(files)
-        battery = Battery(*bodies, question.duration, question.accuracy)
+        pair = question.pair(files)
+        battery = Battery(*pair.bodies, pair.duration, pair.accuracy)
         studied = _run(battery, progress=asked.common.shows_progress)
-        setting = asked.setting(files, bodies, question)
+        setting = asked.setting(files, pair)
     from obbcli.report.stability import stability_bare, stability_record, stability_tables
 
     record = stability_record(setting, studied)

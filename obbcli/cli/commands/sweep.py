@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.two_bodies import Asked
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import Trees
     from obbcli.report.record import Record
     from obbcli.report.sweep import Swept
     from obbcli.sweeps.query_file import Queries

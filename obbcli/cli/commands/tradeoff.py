@@ -151,7 +151,7 @@ def command(asked: _Asked) -> int:
     with naming_options(question):
         study = _study(question, shapes, asked.wanted.budget)
         is_interrupted = _run(study, asked)
-    record = _record(asked, question, study, sources, is_interrupted=is_interrupted)
+    record = _record(asked, study, sources, is_interrupted=is_interrupted)
     _show(record, asked)
     return _exit_code(record["result"])
 
@@ -234,7 +234,6 @@ def _run(study: Study, asked: _Asked) -> bool:
 
 def _record(
     asked: _Asked,
-    question: Question,
     study: Study,
     sources: tuple[Source, Source],
     *,
@@ -244,7 +243,7 @@ def _record(
     from obbcli.report.tradeoff import Limits, tradeoff_record
 
     found = study.result()
-    motion = motion_part(study.bodies, question.duration) if asked.common.json else {}
+    motion = motion_part(study.bodies, study.duration) if asked.common.json else {}
     setting = Setting(sources, motion, found.reference_accuracy)
     wanted = asked.wanted
     limits = Limits(wanted.max_error, wanted.max_gap, wanted.max_time)

@@ -177,19 +177,19 @@ def _draw_contact(asked: Asked, how: ViewOptions, target: Path, *, solid: bool) 
     with naming_options(question):
         from obbcli.questions.first_contact import Query
 
-        bodies = question.bodies(files)
-        query = Query(*bodies, question.duration, question.accuracy, solid=solid)
-        answer = run(query, question.accuracy, progress=asked.common.shows_progress)
-        setting = asked.setting(files, bodies, question, solid)
+        pair = question.pair(files)
+        query = Query.about(pair, solid=solid)
+        answer = run(query, pair.accuracy, progress=asked.common.shows_progress)
+        setting = asked.setting(files, pair, solid)
     from obbcli.report.view import contact_record
     from obbcli.view.contact import contact_picture, moment_of
 
     start = time.perf_counter()
     ghosts = GHOSTS if how.ghosts is None else how.ghosts
-    moment = moment_of(bodies, answer, question.duration, ghosts)
+    moment = moment_of(pair.bodies, answer, pair.duration, ghosts)
     a, b = (_base(file) for file in files)
     title = f"{a} and {b}: {answer.status.value}, t = {moment.time:.6g} s"
-    picture = contact_picture(bodies, answer, moment, title, how.zoom or 1.0)
+    picture = contact_picture(pair.bodies, answer, moment, title, how.zoom or 1.0)
     output = _write(picture, [title, f"blue: A, {a}", f"orange: B, {b}"], how, target)
     record = contact_record(setting, answer, output, moment)
     record["stats"]["seconds"]["draw"] = time.perf_counter() - start

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.accuracy import AccuracyOptions
-    from obbcli.motion.body import Body
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
+    from obbcli.questions.pair_question import PairQuestion
 
     Numbers: TypeAlias = tuple[float, float, float]
 
@@ -163,12 +163,17 @@ class Question(NamedTuple):
         """Return whether anything moves while the question runs."""
         return self.duration != 0 and not all(motion.is_at_rest for motion in self.motions)
 
-    def bodies(self, files: tuple[Input, Input]) -> tuple[Body, Body]:
-        """Return A and B as they are placed and move."""
+    def pair(self, files: tuple[Input, Input]) -> PairQuestion:
+        """Return the question about A and B, as they are placed and move.
+
+        Raises:
+            MotionError: a duration that does not fit the motions.
+        """
         from obbcli.motion.body import Body
+        from obbcli.questions.pair_question import PairQuestion
 
         a, b = (
             Body(file.tree, pose, motion)
             for file, pose, motion in zip(files, self.poses, self.motions, strict=True)
         )
-        return a, b
+        return PairQuestion.of(a, b, self.duration, self.accuracy)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
     from obbcli.answers.contact import FirstContact
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.option import Decorator
-    from obbcli.motion.body import Body
     from obbcli.questions.first_contact import Query
+    from obbcli.questions.pair_question import PairQuestion
     from obbcli.report.record import Record, Setting
 
 QUESTION = "Question"
@@ -82,11 +81,7 @@ class Asked(NamedTuple):
         )
 
     def setting(
-        self,
-        files: tuple[Input, Input],
-        bodies: tuple[Body, Body],
-        question: Question,
-        solid: bool | None = None,
+        self, files: tuple[Input, Input], pair: PairQuestion, solid: bool | None = None
     ) -> Setting:
         """Return what a record says of the question."""
         from obbcli.report.record import Setting, motion_part
@@ -94,8 +89,8 @@ class Asked(NamedTuple):
         # Hashes and centroids cost time, and only a document shows them.
         is_shown = self.common.json
         sources = [file.source(with_sha256=is_shown) for file in files]
-        motion = motion_part(bodies, question.duration) if is_shown else {}
-        return Setting(sources, motion, question.accuracy, solid)
+        motion = motion_part(pair.bodies, pair.duration) if is_shown else {}
+        return Setting(sources, motion, pair.accuracy, solid)
 
 
 def about_two(
@@ -150,18 +145,18 @@ def run(query: Query, accuracy: Accuracy, *, progress: bool) -> FirstContact:
     Raises:
         CancelledError: Ctrl-C; it says up to when separation is proven.
     """
-    from obbcli.questions.border import POPS_A_SLICE
+    from obbcli.questions.budget import Budget
 
-    left = accuracy.max_iterations
-    stop = None if accuracy.timeout is None else time.perf_counter() + accuracy.timeout
+    budget = Budget(accuracy.max_iterations, accuracy.timeout).start()
+    taken = 0
     try:
         with proving(query.duration, _shown(accuracy), wanted=progress) as show:
             while True:
                 # The slices of `Query.advance` itself: a bar changes no answer.
-                answer = query.advance(min(left, POPS_A_SLICE), _LOOK)
-                left = accuracy.max_iterations - answer.stats.pops
-                is_late = stop is not None and time.perf_counter() >= stop
-                if query.is_finished or left <= 0 or is_late:
+                answer = query.advance(budget.slice(), _LOOK)
+                budget.spend(answer.stats.pops - taken)
+                taken = answer.stats.pops
+                if query.is_finished or budget.is_over:
                     return answer
                 show(query.time)
     except KeyboardInterrupt as fault:

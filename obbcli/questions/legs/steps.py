@@ -29,16 +29,15 @@ from obbcli.motion.integrators import euler_step, rk4_step
 from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
 from obbcli.motion.rotation import axis_of, turn_after
-from obbcli.questions.legs.relay import Leg, length_of
-from obbcli.questions.legs.through_poses import ROUNDING, jump_at, norm, rounding_of
+from obbcli.questions.legs.leg import Leg, length_of
+from obbcli.questions.legs.slack import ROUNDING, jump_at, norm, rounding_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from obbcli.accuracy import Accuracy
-    from obbcli.questions.border import Trees
+    from obbcli.questions.pair_question import PairQuestion
     from obbcli.tree.tree import ObbTree
 
     Array = NDArray[np.float64]
@@ -52,9 +51,7 @@ _UP = 1 + 2.0**-45
 _STRETCH = 1 + 2.0**-28
 
 
-def steps_of(
-    bodies: tuple[Body, Body], trees: Trees, duration: float, accuracy: Accuracy
-) -> Iterator[Leg]:
+def steps_of(pair: PairQuestion) -> Iterator[Leg]:
     """Yield the steps of [0, duration], earliest first: legs of bodies that do not turn.
 
     Their slack bounds how far the modelled paths of any points of both bodies together are from the
@@ -64,12 +61,13 @@ def steps_of(
         MotionError: positions leave the range of double, or a step turns by so much that an
             integrator makes no frame of it.
     """
+    bodies, duration, accuracy = pair.bodies, pair.duration, pair.accuracy
     if all(body.motion.goes_straight for body in bodies):
         yield Leg(0.0, duration, bodies, 0.0)
         return
     step_a, step_b = (
         _step_of(body, tree, duration, accuracy.integrator)
-        for body, tree in zip(bodies, trees, strict=True)
+        for body, tree in zip(bodies, pair.trees, strict=True)
     )
     count = accuracy.steps
     for k in range(count):

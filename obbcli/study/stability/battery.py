@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.accuracy import Accuracy
 from obbcli.answers.status import Status
 from obbcli.errors import ObbError
 from obbcli.questions.first_contact import first_contact
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.study.stability import extremes, surfaces, units
 from obbcli.study.stability.proofs import Proofs, on_clock
 from obbcli.study.stability.rows import Row, Stability
@@ -29,6 +29,7 @@ from obbcli.study.stability.world import SLACK, Trees, pair_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
     from obbcli.motion.body import Body, Shape
     from obbcli.study.stability.extremes import Changed, Extreme
@@ -63,7 +64,7 @@ class Battery:
         duration: float | None = None,
         accuracy: Accuracy | None = None,
     ) -> None:
-        self._pair = pair_of(a, b, duration, Accuracy() if accuracy is None else accuracy)
+        self._pair = pair_of(PairQuestion.of(a, b, duration, accuracy))
         self._trees = Trees()
         asked = self._pair
         whole = first_contact(*self._trees.bodies(asked), asked.duration, asked.accuracy)

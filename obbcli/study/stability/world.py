@@ -11,16 +11,15 @@ import numpy as np
 
 from obbcli.errors import MotionError
 from obbcli.mesh import Mesh
-from obbcli.motion.body import Body, as_body, pivot_of
+from obbcli.motion.body import Body, pivot_of
 from obbcli.motion.motion import Motion
-from obbcli.questions.border import duration_of, trees_of
 from obbcli.tree.tree import ObbTree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.accuracy import Accuracy
-    from obbcli.motion.body import Shape
+    from obbcli.questions.pair_question import PairQuestion
 
     Floats = NDArray[np.float64]
 
@@ -158,23 +157,21 @@ def two_sum(first: Floats, second: Floats) -> tuple[Floats, Floats]:
         return total, (first - (total - back)) + (second - back)
 
 
-def pair_of(a: Body | Shape, b: Body | Shape, duration: float | None, accuracy: Accuracy) -> Pair:
+def pair_of(asked: PairQuestion) -> Pair:
     """Return the question about two bodies in world coordinates.
 
     Raises:
         MotionError: the method is sampled, or a body moves through poses.
         ObbError: a shape cannot be read or is refused.
     """
-    if accuracy.method == "sampled":
+    if asked.accuracy.method == "sampled":
         raise MotionError("method", "is sampled, which proves nothing", "ask for certified answers")
-    bodies = as_body(a), as_body(b)
-    for name, body in zip("ab", bodies, strict=True):
-        if body.motion.places_mesh:
+    for name, body in zip("ab", asked.bodies, strict=True):
+        if body.motion.steady is None:
             fault = "moves through poses, which extremes are not defined for"
             raise MotionError(f"motion of {name}", fault, "give a velocity")
-    trees = trees_of(bodies)
-    first, second = (_side(body, tree) for body, tree in zip(bodies, trees, strict=True))
-    return Pair(first, second, duration_of(duration, bodies), accuracy)
+    first, second = map(_side, asked.bodies, asked.trees)
+    return Pair(first, second, asked.duration, asked.accuracy)
 
 
 def _side(body: Body, tree: ObbTree) -> Side:

@@ -10,8 +10,8 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError
 from obbcli.motion.body import as_body
-from obbcli.questions.border import duration_of
 from obbcli.questions.first_contact import Query, first_contact
+from obbcli.questions.pair_question import duration_of
 from obbcli.study.tradeoff.judge import Judge
 from obbcli.study.tradeoff.settings import Build, Scale, Setting, levels_of, plan, reference_of
 from obbcli.study.tradeoff.taking_turns import fair_part, no_collections
@@ -64,6 +64,9 @@ class Study:
         budget: s that the whole study may take. The reference answer comes first and is not cut
             short but by that.
 
+    Attributes:
+        duration: s, as resolved.
+
     Raises:
         MotionError: the duration or the budget is negative or not finite.
         MeshError: a mesh cannot be read or is refused.
@@ -82,10 +85,10 @@ class Study:
     ) -> None:
         self._budget = _seconds(budget)
         bodies = as_body(a), as_body(b)
-        self._duration = duration_of(duration, bodies)
+        self.duration = duration_of(duration, bodies)
         self._trees = Trees(bodies)
         self._asked = Accuracy() if accuracy is None else accuracy
-        self._reference_accuracy = reference_of(self._asked, self._duration)
+        self._reference_accuracy = reference_of(self._asked, self.duration)
         self._reference: FirstContact | None = None
         self._judge: Judge | None = None
         self._entries: dict[Setting, _Entry] = {}
@@ -138,7 +141,7 @@ class Study:
         return Tradeoff(
             reference=self._reference,
             reference_accuracy=self._reference_accuracy,
-            duration=self._duration,
+            duration=self.duration,
             rows=tuple(replace(row, on_front=on) for row, on in zip(rows, front, strict=True)),
             unreached=tuple(
                 Unreached(self._trees.options(setting.build), setting.accuracy, why)
@@ -153,7 +156,7 @@ class Study:
         motions = [body.motion for body in trees.bodies]
         still = all(motion.is_at_rest for motion in motions)
         turns = not all(motion.goes_straight for motion in motions)
-        duration = 0.0 if still else self._duration
+        duration = 0.0 if still else self.duration
         scale = Scale(duration, trees.size, turns, levels_of(trees.triangle_count))
         return plan(self._asked, scale, varies_trees=trees.can_vary)
 
@@ -270,9 +273,9 @@ class Study:
         """Return an answer and the seconds it took; one that is cut short is unresolved."""
         start = time.perf_counter()
         if limit is None:
-            answer = first_contact(*built.bodies, self._duration, accuracy)
+            answer = first_contact(*built.bodies, self.duration, accuracy)
         else:
-            query = Query(*built.bodies, self._duration, accuracy)
+            query = Query(*built.bodies, self.duration, accuracy)
             most = limit if accuracy.timeout is None else min(limit, accuracy.timeout)
             answer = query.advance(accuracy.max_iterations, most)
         return answer, time.perf_counter() - start

@@ -1,0 +1,169 @@
+"""`PairQuestion`: a question about two bodies, understood once and asked anywhere."""
+
+from __future__ import annotations
+
+import math
+import os
+from time import perf_counter
+from typing import TYPE_CHECKING, NamedTuple
+
+from obbcli.accuracy import Accuracy
+from obbcli.errors import MotionError
+from obbcli.mesh import Mesh
+from obbcli.motion.body import Body, as_body, pivot_of
+from obbcli.tree.tree import ObbTree, load_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from obbcli.motion.body import Shape
+
+# Of the duration: the width asked of a bracket where the caller asks for none.
+_TIME_TOLERANCE = 1e-9
+_EXACT = Accuracy()
+
+Trees = tuple[ObbTree, ObbTree]
+
+
+class PairQuestion(NamedTuple):
+    """What is asked about two bodies, with all defaults resolved; made by `of`.
+
+    Attributes:
+        bodies: A and B. A motion that is steady after all, such as a path of one pose, is replaced
+            by the constant motion that it is.
+        trees: theirs.
+        duration: s; the closed interval [0, duration] is asked about.
+        accuracy: what is asked of the answer.
+        load_seconds: s of wall time that it took to read meshes and trees.
+    """
+
+    bodies: tuple[Body, Body]
+    trees: Trees
+    duration: float
+    accuracy: Accuracy
+    load_seconds: float = 0.0
+
+    @classmethod
+    def of(
+        cls,
+        a: Body | Shape,
+        b: Body | Shape,
+        duration: float | None = None,
+        accuracy: Accuracy | None = None,
+    ) -> PairQuestion:
+        """Return the question about two shapes, which are read and given trees where need be.
+
+        Args:
+            a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+            b: as `a`.
+            duration: s; None: as `duration_of` says.
+            accuracy: None: the defaults.
+
+        Raises:
+            MotionError: the duration is negative or not finite, or a shape is of another kind.
+            MeshError: a mesh cannot be read or is refused.
+            TreeFileError: a tree file is damaged.
+            OSError: a file cannot be read.
+        """
+        bodies = as_body(a), as_body(b)
+        end = duration_of(duration, bodies)
+        start = perf_counter()
+        trees = trees_of(bodies)
+        loaded = perf_counter() - start
+        resolved = _resolved(bodies[0]), _resolved(bodies[1])
+        return cls(resolved, trees, end, _EXACT if accuracy is None else accuracy, loaded)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether both bodies have constant velocities."""
+        a, b = self.bodies
+        return a.motion.steady is not None and b.motion.steady is not None
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the bodies are asked about at t = 0 alone, or neither moves."""
+        a, b = self.bodies
+        return self.duration == 0 or (a.motion.is_at_rest and b.motion.is_at_rest)
+
+    @property
+    def moves_nothing(self) -> bool:
+        """Whether neither body, both of constant velocities, moves against the other."""
+        if self.is_at_rest:
+            return True
+        (a, b), (tree_a, tree_b) = self.bodies, self.trees
+        ma, mb = a.motion, b.motion
+        if ma.is_at_rest or mb.is_at_rest or ma.velocities != mb.velocities:
+            return False
+        return not ma.is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
+
+    @property
+    def time_tolerance(self) -> float:
+        """The width asked of a bracket, s."""
+        return time_tolerance(self.accuracy, self.duration)
+
+
+def _resolved(body: Body) -> Body:
+    steady = body.motion.steady
+    if steady is None or steady is body.motion:
+        return body
+    return Body(body.shape, body.pose, steady)
+
+
+def trees_of(bodies: tuple[Body, Body]) -> Trees:
+    """Return the trees of two bodies, one for both where they share a shape.
+
+    Raises:
+        MeshError: a mesh cannot be read or is refused.
+        TreeFileError: a tree file is damaged.
+        OSError: a file cannot be read.
+    """
+    a, b = bodies[0].shape, bodies[1].shape
+    if isinstance(a, ObbTree) and isinstance(b, ObbTree):
+        return a, b
+    tree = _tree(a)
+    return tree, tree if b is a else _tree(b)
+
+
+def _tree(shape: Shape) -> ObbTree:
+    if isinstance(shape, ObbTree):
+        return shape
+    if isinstance(shape, Mesh):
+        return ObbTree.build(shape)
+    if isinstance(shape, (str, os.PathLike)):
+        return load_tree(shape)
+    raise MotionError(
+        "shape", f"is of type {type(shape).__name__}", "pass a tree, a mesh or a path"
+    )
+
+
+def duration_of(duration: float | None, bodies: Iterable[Body]) -> float:
+    """Return the end of the interval asked about, s.
+
+    By default 0 where all bodies rest, the last time of a motion through poses, or else 1.
+
+    Raises:
+        MotionError: not a finite number of at least 0.
+    """
+    if duration is None:
+        motions = [body.motion for body in bodies if not body.motion.is_at_rest]
+        if not motions:
+            return 0.0
+        ends = (motion.ends_at for motion in motions)
+        return max((end for end in ends if end is not None), default=1.0)
+    try:
+        seconds = float(duration)
+    except (TypeError, ValueError) as fault:
+        raise MotionError("duration", f"is {duration!r}", "use a number of seconds") from fault
+    except OverflowError as fault:
+        raise MotionError("duration", str(fault), "use a finite number of seconds") from fault
+    if isinstance(duration, str) or not 0 <= seconds < math.inf:
+        raise MotionError(
+            "duration", f"is {duration!r}", "use a finite number of at least 0 seconds"
+        )
+    return seconds
+
+
+def time_tolerance(accuracy: Accuracy, duration: float) -> float:
+    """Return the width asked of a bracket, s."""
+    asked = accuracy.time_tolerance
+    return _TIME_TOLERANCE * duration if asked is None else asked
