@@ -40,6 +40,10 @@ ROWS = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
             "3 lines that are no statements of OBJ passed over: the first is line 5, '----'",
         ),
         (
+            b"\xe4\xf6 1 2\n" + TETRAHEDRON,
+            "1 line that is no statement of OBJ passed over: the first is line 1, 'äö'",
+        ),
+        (
             TETRAHEDRON + b"layer 3\n",
             "1 line that is no statement of OBJ passed over: the first is line 9, 'layer'",
         ),
@@ -92,7 +96,6 @@ def test_every_statement_that_is_passed_over_is_needed_in_the_list(keyword, monk
         (b"<<<<<<< HEAD", "is a merge conflict of git: the file holds two versions"),
         (b">>>>>>> main", "is a merge conflict of git"),
         (b"\x00\x01\x02", r"'\?\?\?' is no OBJ statement; the file is damaged, or no OBJ"),
-        (b"\xe4\xf6", "is no OBJ statement; the file is damaged, or no OBJ"),
         (b"v 0 0 1 v 1 1 1", "'v' is not a number"),
         (b"v 0 0 1 nan", "coordinate is nan"),
     ],
@@ -103,9 +106,7 @@ def test_obj_refuses_what_may_be_part_of_the_shape(line, fault):
 
 
 def test_obj_of_other_words_alone_is_told_as_such():
-    with pytest.raises(
-        MeshError, match="has no faces, but 2 lines that are no statements of OBJ: "
-    ):
+    with pytest.raises(MeshError, match="has no faces, but 2 lines that are no statements of"):
         load_mesh_bytes(b"Dear reader,\nthis is no mesh.\n", ".obj")
 
 
@@ -125,12 +126,10 @@ def test_obj_joins_continued_faces_and_vertices():
 
 
 @pytest.mark.parametrize("extra", [b" 1.0", b" 0.1 0.2 0.3", b" 1 0.1 0.2 0.3", b" 255 0 0"])
-@pytest.mark.parametrize("prefix", [b"", b"mg off\n4 4 4\n", b" mg off\n"])
+@pytest.mark.parametrize("prefix", [b"", b" mg off\n"])
 def test_obj_takes_weights_and_colours_of_vertices(extra, prefix):
-    data = TETRAHEDRON.replace(b"v 0 0 0", b"v 0 0 0" + extra).replace(
-        b"1 0\n", b"1 0" + extra + b"\n"
-    )
+    vertices, faces = TETRAHEDRON[:32], TETRAHEDRON[32:]
 
-    mesh = load_mesh_bytes(prefix.replace(b"4 4 4\n", b"") + data, ".obj")
+    mesh = load_mesh_bytes(prefix + vertices.replace(b"\n", extra + b"\n") + faces, ".obj")
 
     np.testing.assert_array_equal(mesh.vertices, [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
