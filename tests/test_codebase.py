@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import obbcli
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "obbcli"
 MODULES = sorted(path.relative_to(ROOT).as_posix() for path in PACKAGE.rglob("*.py"))
@@ -186,6 +188,14 @@ def test_file_is_not_too_long(name: str) -> None:
     lines = (ROOT / name).read_text(encoding="utf-8").count("\n")
 
     assert lines <= LONGEST_FILE
+
+
+def test_no_module_hides_a_public_function() -> None:
+    # Importing `obbcli.sweep` would put the module in the place of the function.
+    modules = {layer(module) for module in MODULES}
+    public = set(obbcli.__all__) - {"primitives", "__version__"}
+
+    assert modules & public == set()
 
 
 def test_top_level_holds_what_it_should() -> None:

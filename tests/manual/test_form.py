@@ -162,10 +162,9 @@ def known_packages() -> set[str]:
 def works(words: list[str]) -> bool:
     """Return whether `pip install` of these can work, though obbtree is on no index."""
     known = known_packages()
-    places = {".", "git+URL", "{package}"}  # the last stands in a text that names one of them
-    return bool(words) and all(
-        word in places or word.endswith(".whl") or word in known for word in words
-    )
+    # Texts that name one package or another have its name in braces.
+    works = known | {".", "git+URL", "{name}", "{package}"}
+    return bool(words) and all(word in works or word.endswith(".whl") for word in words)
 
 
 def test_pip_install_lines_name_what_can_be_installed() -> None:
