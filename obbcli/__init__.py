@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from obbcli.motion.body import Body
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
-    from obbcli.questions.collide import collide, triangle_pairs
+    from obbcli.questions.collide import collide
     from obbcli.questions.contacts import contacts
     from obbcli.questions.distance import distance
     from obbcli.questions.first_contact import Query, first_contact
-    from obbcli.questions.triangle_pairs import triangle_pair_blocks
+    from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
     from obbcli.scene import Scene, SceneBody, SceneContact
     from obbcli.study.stability.battery import stability
     from obbcli.study.stability.rows import Stability
@@ -78,7 +78,7 @@ _HOMES = {
     "sweep": "sweeps.sweep",
     "tradeoff": "study.tradeoff.tradeoff",
     "triangle_pair_blocks": "questions.triangle_pairs",
-    "triangle_pairs": "questions.collide",
+    "triangle_pairs": "questions.triangle_pairs",
 }
 
 __all__ = [

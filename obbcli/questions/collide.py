@@ -1,4 +1,4 @@
-"""Yes or no, and which: `collide` and `triangle_pairs`. Eberly 2008 §7."""
+"""Yes or no: `collide`. Eberly 2008 §7."""
 
 from __future__ import annotations
 
@@ -7,20 +7,14 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.answers.collision import Collision
-from obbcli.errors import UnresolvedError
 from obbcli.motion.body import as_body
-from obbcli.questions.border import NO_LIMIT, limits_of, placed_of, refused, whole_limit
+from obbcli.questions.border import limits_of, placed_of, refused
 from obbcli.questions.pair_question import PairQuestion, trees_of
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from obbcli.answers.contact import FirstContact
     from obbcli.motion.body import Body, Shape
 
-# What a pair takes at the peak: two rows, and what lists that grow set aside.
-_BYTES_A_PAIR = 32
 _EXACT_LIMITS = limits_of(Accuracy())
 
 
@@ -103,65 +97,3 @@ def collision_of(found: FirstContact) -> Collision:
         contained=found.contained,
         stats=found.stats,
     )
-
-
-def triangle_pairs(
-    a: Body | Shape,
-    b: Body | Shape,
-    limit: int | None = None,
-    *,
-    threads: int | None = None,
-    max_memory: int | None = None,
-) -> NDArray[np.int64]:
-    """Return every pair of triangles that intersect at t = 0, int64 (N, 2), sorted.
-
-    Exact: the same pairs as testing all triangles against all others in rational arithmetic.
-    Rows of the meshes' files. Motions play no part. There may be as many pairs as the product of
-    the numbers of triangles: `triangle_pair_blocks` yields them some at a time.
-
-    Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
-        limit: stop after so many pairs, and return those, sorted. Which ones depends on the trees.
-            One thread looks for them.
-        threads: at most so many; None: as many as this process may use cores. They change nothing
-            but the time it takes.
-        max_memory: bytes that the pairs may need, about. None: no limit.
-
-    Raises:
-        UnresolvedError: the pairs need more than `max_memory`.
-        MotionError: `limit` or `max_memory` is no whole number of at least 1, or posed coordinates
-            leave the range of double.
-        MeshError: a mesh cannot be read or is refused.
-        TreeFileError: a tree file is damaged.
-        ObbError: `threads` is no positive integer.
-        OSError: a file cannot be read.
-
-    Example:
-        >>> from obbcli import Body, Pose
-        >>> moved = Body("sample_meshes/pinion.stl", Pose(translation=[-1, 0, 0]))
-        >>> triangle_pairs("sample_meshes/gear.stl", moved, limit=2).tolist()
-        [[92, 460], [93, 460]]
-    """
-    # Imported where it is needed: a yes or no answers without it.
-    from obbcli.threads import thread_count
-
-    workers = thread_count(threads)
-    most = NO_LIMIT if limit is None else whole_limit(limit)
-    bodies = as_body(a), as_body(b)
-    trees = trees_of(bodies)
-    here, there = map(placed_of, bodies, trees)
-    room = NO_LIMIT
-    if max_memory is not None:
-        room = whole_limit(max_memory, "max_memory") // _BYTES_A_PAIR
-    try:
-        found, _counts = kernels.triangle_pairs(here, there, most, workers, room)
-    except (ValueError, kernels.TreeError) as fault:
-        raise refused(trees, fault) from fault
-    if found is None:
-        raise UnresolvedError(
-            "max_memory",
-            f"more than {room} pairs of triangles intersect, and {max_memory} bytes are allowed",
-            "allow more, cut the list with limit, or take it in blocks",
-        )
-    return found

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from obbcli.report.record import Record
     from obbcli.scene.bodies import Ignore
-    from obbcli.scene.pairs import Asked
+    from obbcli.scene.pairs import ScenePairs
     from obbcli.scene.results import SceneContact, SceneStats
 
 _COLUMNS = ("A", "B", "time [s]", "triangle of A", "triangle of B", "feature", "point")
@@ -51,7 +51,7 @@ class Answer(NamedTuple):
 def scene_record(
     source: Source,
     meshes: Sequence[Source],
-    asked: Asked,
+    asked: ScenePairs,
     ignore: Sequence[Ignore],
     answer: Answer,
     *,
@@ -82,14 +82,14 @@ def scene_record(
     )
 
 
-def mesh_paths(asked: Asked) -> list[str]:
+def mesh_paths(asked: ScenePairs) -> list[str]:
     """Return the files that bodies are made of, each once, in the order of the bodies."""
     shapes = [body.body.shape for body in asked.bodies]
     paths = [str(shape) for shape in shapes if isinstance(shape, (str, PathLike))]
     return list(dict.fromkeys(paths))
 
 
-def _bodies_part(asked: Asked, places: dict[str, int], *, with_motion: bool) -> list[Record]:
+def _bodies_part(asked: ScenePairs, places: dict[str, int], *, with_motion: bool) -> list[Record]:
     return [
         {
             "name": body.name,
@@ -102,7 +102,7 @@ def _bodies_part(asked: Asked, places: dict[str, int], *, with_motion: bool) -> 
     ]
 
 
-def _result_part(asked: Asked, answer: Answer) -> Record:
+def _result_part(asked: ScenePairs, answer: Answer) -> Record:
     touching = [found for found in answer.contacts if found.status is not Status.UNRESOLVED]
     unresolved = [found for found in answer.contacts if found.status is Status.UNRESOLVED]
     status = Status.SEPARATED if not touching else touching[0].status

@@ -13,7 +13,7 @@ from obbcli.questions.describe import unresolved
 from obbcli.questions.pair_question import PairQuestion, time_tolerance
 from obbcli.questions.search import Search
 from obbcli.scene.candidates import earliest
-from obbcli.scene.contact_stream import Course
+from obbcli.scene.contact_stream import ContactStream
 from obbcli.scene.first_contacts import FirstContacts
 from obbcli.scene.results import SceneContact, SceneStats
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from obbcli.answers.contact import Contact
-    from obbcli.scene.pairs import Asked
+    from obbcli.scene.pairs import ScenePairs
 
 
 class _Listing(NamedTuple):
@@ -44,7 +44,7 @@ class _Listing(NamedTuple):
     search: Search
 
 
-class AllContacts(Course):
+class AllContacts(ContactStream):
     """Contacts of a scene, earliest first, one a pair of triangles that touches.
 
     Made by `Scene.contacts`. Two bodies are listed when it is known that they touch next. Where a
@@ -55,7 +55,7 @@ class AllContacts(Course):
         limit: at most so many contacts. None: all.
     """
 
-    def __init__(self, asked: Asked, limit: int | None) -> None:
+    def __init__(self, asked: ScenePairs, limit: int | None) -> None:
         if asked.accuracy.method == "sampled":
             fault = "knows the first contact alone"
             raise MotionError("method='sampled'", fault, "use the certified method")

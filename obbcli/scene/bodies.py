@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from obbcli.errors import SceneError
 from obbcli.motion.body import Body, Shape, as_body
 from obbcli.spelling import known_keys, nearest
+
+if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
 
 # `{"bodies": [a, b]}`, `{"groups": [g]}` (within one group) or `{"groups": [g, h]}` (between two).
 Ignore: TypeAlias = Mapping[str, Sequence[str]]
@@ -54,6 +57,22 @@ class SceneBody:
         put(self, "body", made)
         put(self, "static", static)
         put(self, "group", group)
+
+
+class SceneParts(NamedTuple):
+    """What a scene consists of.
+
+    Attributes:
+        bodies: in order, each of a name of its own.
+        ignore: which of them are not asked about each other.
+        duration: s; None in a file that leaves it to the default.
+        accuracy: what is asked of each answer.
+    """
+
+    bodies: tuple[SceneBody, ...]
+    ignore: tuple[Ignore, ...]
+    duration: float | None
+    accuracy: Accuracy
 
 
 def as_bodies(bodies: Bodies) -> tuple[SceneBody, ...]:

@@ -1,4 +1,4 @@
-"""`Course`: contacts of a scene, found step by step: what questions about scenes return."""
+"""`ContactStream`: contacts of a scene, found step by step: what questions about scenes return."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from obbcli.scene.results import SceneContact, SceneStats
 
 if TYPE_CHECKING:
-    from obbcli.scene.pairs import Asked
+    from obbcli.scene.pairs import ScenePairs
 
 
-class Course(Iterator[SceneContact]):
+class ContactStream(Iterator[SceneContact]):
     """Contacts of a scene in order of time.
 
     Args:
@@ -22,7 +22,7 @@ class Course(Iterator[SceneContact]):
         asked: as given.
     """
 
-    def __init__(self, asked: Asked) -> None:
+    def __init__(self, asked: ScenePairs) -> None:
         self.asked = asked
 
     @property

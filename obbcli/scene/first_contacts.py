@@ -17,14 +17,14 @@ from obbcli.errors import MotionError
 from obbcli.questions.budget import Budget
 from obbcli.questions.describe import unresolved
 from obbcli.questions.first_contact import Query
-from obbcli.scene.contact_stream import Course
-from obbcli.scene.pair_queue import Agenda, Item
+from obbcli.scene.contact_stream import ContactStream
+from obbcli.scene.pair_queue import Item, PairQueue
 from obbcli.scene.results import SceneContact, SceneStats
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
-    from obbcli.scene.pairs import Asked
+    from obbcli.scene.pairs import ScenePairs
 
 # Queue pops of a question before another may be turned to: the least for which turning costs
 # little, and about what a question takes.
@@ -33,7 +33,7 @@ _POPS = 4096
 _CONTACT_FIELDS = tuple(field.name for field in fields(Contact))
 
 
-class FirstContacts(Course):
+class FirstContacts(ContactStream):
     """Contacts of a scene, earliest first, one a pair that touches.
 
     Made by `Scene.first_contacts`. A pair that a limit leaves open comes too, as `unresolved`, at
@@ -45,10 +45,10 @@ class FirstContacts(Course):
         is_eager: whether to finish a question before turning to another where that costs less.
     """
 
-    def __init__(self, asked: Asked, *, first: bool, is_eager: bool = True) -> None:
+    def __init__(self, asked: ScenePairs, *, first: bool, is_eager: bool = True) -> None:
         super().__init__(asked)
         self._accuracy: Accuracy = asked.accuracy
-        self._agenda = Agenda(asked.candidates)
+        self._agenda = PairQueue(asked.candidates)
         self._is_first = first
         self._is_eager = is_eager and not first
         self._best = math.inf  # when a contact is known, s

@@ -1,4 +1,4 @@
-"""`Agenda`: what is left to do about the pairs of a scene, earliest first."""
+"""`PairQueue`: what is left to do about the pairs of a scene, earliest first."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Item(NamedTuple):
     work: Any
 
 
-class Agenda:
+class PairQueue:
     """Pairs by time, then by their places in the scene.
 
     Args:

@@ -1,4 +1,4 @@
-"""`Asked`: the bodies of a question about a scene, loaded, and the pairs of them that may meet."""
+"""`ScenePairs`: the bodies of a question about a scene, and the pairs of them that may meet."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
     from obbcli.answers.counts import Counts
     from obbcli.motion.body import Body
+    from obbcli.scene.bodies import SceneParts
     from obbcli.scene.candidates import Candidates
-    from obbcli.scene.scene import Scene
     from obbcli.scene.shapes import Shapes
 
 
-class Asked:
+class ScenePairs:
     """A question about a scene, up to where pairs are looked at.
 
     Args:
-        scene: the scene.
+        scene: what the scene consists of; its duration is resolved.
         shapes: its meshes and trees.
         pairs: the bodies asked about, by name; None: all pairs.
 
@@ -42,8 +42,9 @@ class Asked:
     """
 
     def __init__(
-        self, scene: Scene, shapes: Shapes, pairs: Iterable[tuple[str, str]] | None
+        self, scene: SceneParts, shapes: Shapes, pairs: Iterable[tuple[str, str]] | None
     ) -> None:
+        assert scene.duration is not None
         self.duration = scene.duration
         self.accuracy = scene.accuracy
         self._all = scene.bodies
@@ -61,7 +62,7 @@ class Asked:
         with self.timed("load"):
             self.shapes = loaded = [shapes.load(body.body.shape) for body in bodies]
         with self.timed("bounds"):
-            found = find_candidates(bodies, loaded, places, ignored, scene.duration, scene.accuracy)
+            found = find_candidates(bodies, loaded, places, ignored, self.duration, scene.accuracy)
         self.candidates = found if wanted is None else _only(found, wanted)
 
     @contextmanager

@@ -11,21 +11,20 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import ObbError, SceneError
 from obbcli.motion.body import Body
 from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
-from obbcli.scene.bodies import SceneBody, as_ignored
+from obbcli.scene.bodies import SceneBody, SceneParts, as_ignored
 from obbcli.spelling import known_keys
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable
 
-    from obbcli.scene.bodies import Ignore
 
 T = TypeVar("T")
 
@@ -36,15 +35,6 @@ _BODY_KEYS = ("name", "mesh", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
 _PATH_KEYS = ("times", "poses")
 _ACCURACY_KEYS = tuple(Accuracy().as_dict())
-
-
-class SceneParts(NamedTuple):
-    """What stands in a scene file."""
-
-    bodies: tuple[SceneBody, ...]
-    ignore: tuple[Ignore, ...]
-    duration: float | None
-    accuracy: Accuracy
 
 
 def read_scene(path: str | os.PathLike[str]) -> SceneParts:

@@ -8,9 +8,9 @@ from obbcli.accuracy import Accuracy
 from obbcli.errors import SceneError
 from obbcli.questions.border import whole_limit
 from obbcli.questions.pair_question import duration_of
-from obbcli.scene.bodies import as_bodies, as_ignored
+from obbcli.scene.bodies import SceneParts, as_bodies, as_ignored
 from obbcli.scene.first_contacts import FirstContacts
-from obbcli.scene.pairs import Asked
+from obbcli.scene.pairs import ScenePairs
 from obbcli.scene.shapes import Shapes
 
 if TYPE_CHECKING:
@@ -73,6 +73,7 @@ class Scene:
         self.accuracy = Accuracy() if accuracy is None else accuracy
         if not isinstance(self.accuracy, Accuracy):
             raise SceneError("accuracy", f"is {accuracy!r}", "pass an Accuracy")
+        self._parts = SceneParts(self.bodies, self.ignore, self.duration, self.accuracy)
         self._shapes = Shapes(verify=verify)
 
     @classmethod
@@ -115,7 +116,7 @@ class Scene:
             TreeFileError: a tree file is damaged.
             OSError: a file cannot be read.
         """
-        return FirstContacts(Asked(self, self._shapes, pairs), first=first)
+        return FirstContacts(ScenePairs(self._parts, self._shapes, pairs), first=first)
 
     def contacts(
         self, limit: int | None = None, pairs: Iterable[tuple[str, str]] | None = None
@@ -141,7 +142,7 @@ class Scene:
         from obbcli.scene.all_contacts import AllContacts
 
         most = None if limit is None else whole_limit(limit)
-        return AllContacts(Asked(self, self._shapes, pairs), most)
+        return AllContacts(ScenePairs(self._parts, self._shapes, pairs), most)
 
     def __repr__(self) -> str:
         return f"Scene({len(self.bodies)} bodies, {self.duration!r} s)"

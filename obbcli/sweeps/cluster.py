@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.result_lines import Block
     from obbcli.sweeps.row_fields import Row
-    from obbcli.sweeps.row_questions import Setting
+    from obbcli.sweeps.row_questions import SweepSetting
 
 # s to find a scheduler, and for it to have a worker.
 _PATIENCE = 5
@@ -46,7 +46,7 @@ _lock = Lock()
 
 
 def answer_chunk(
-    parcels: Sequence[tuple[str, bytes]], rows: Sequence[Row], setting: Setting, version: str
+    parcels: Sequence[tuple[str, bytes]], rows: Sequence[Row], setting: SweepSetting, version: str
 ) -> tuple[Block, float]:
     """Return the results of some rows and the s they took; runs on a worker.
 
@@ -142,7 +142,7 @@ def _silence() -> Iterator[None]:
 
 
 def answered_by(
-    client: Any, trees: Trees, rows: Iterator[Row], setting: Setting
+    client: Any, trees: Trees, rows: Iterator[Row], setting: SweepSetting
 ) -> Iterator[Block]:
     """Yield the results of rows in order, as `answered` does, from a cluster.
 
@@ -171,7 +171,7 @@ def answered_by(
 class _Tasks:
     """What is sent to a cluster, and sent again where it got lost."""
 
-    def __init__(self, client: Any, trees: Trees, setting: Setting) -> None:
+    def __init__(self, client: Any, trees: Trees, setting: SweepSetting) -> None:
         self._client = client
         self._setting = setting
         contents = [tree.to_bytes() for tree in trees[: 1 if trees[0] is trees[1] else 2]]

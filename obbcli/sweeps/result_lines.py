@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.row_fields import Row
-    from obbcli.sweeps.row_questions import Question, Setting
+    from obbcli.sweeps.row_questions import RowQuestion, SweepSetting
 
 ERROR = "error"
 """How tallies count rows that ask nothing, beside the words of statuses."""
@@ -39,14 +39,14 @@ class Block(NamedTuple):
     tally: Mapping[str, int]
 
 
-def answer_rows(trees: Trees, rows: Sequence[Row], setting: Setting, threads: int) -> Block:
+def answer_rows(trees: Trees, rows: Sequence[Row], setting: SweepSetting, threads: int) -> Block:
     """Return the results of some rows, the same whatever the number of threads.
 
     Raises:
         TreeFileError: a tree file is damaged.
     """
     results: list[dict[str, Any]] = [{}] * len(rows)
-    asked: list[tuple[int, Question]] = []
+    asked: list[tuple[int, RowQuestion]] = []
     for index, row in enumerate(rows):
         try:
             if row.error is not None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _NOTHING: Vector = (0.0, 0.0, 0.0)
 
 
-class Setting(NamedTuple):
+class SweepSetting(NamedTuple):
     """What all rows of a sweep have in common; it travels to where they are answered.
 
     Attributes:
@@ -40,7 +40,7 @@ class Setting(NamedTuple):
     accuracy: Accuracy
 
 
-class Question(NamedTuple):
+class RowQuestion(NamedTuple):
     """A row, understood.
 
     Attributes:
@@ -54,7 +54,7 @@ class Question(NamedTuple):
     duration: float
 
 
-def question_of(values: Values, setting: Setting, where: str) -> Question:
+def question_of(values: Values, setting: SweepSetting, where: str) -> RowQuestion:
     """Return what a row asks.
 
     Args:
@@ -74,11 +74,11 @@ def question_of(values: Values, setting: Setting, where: str) -> Question:
     assert isinstance(duration, float)
     if duration < 0:
         raise MotionError(f"{where}, duration", f"is {duration!r}", "use at least 0 s")
-    return Question((poses[0], poses[1]), (motions[0], motions[1]), duration)
+    return RowQuestion((poses[0], poses[1]), (motions[0], motions[1]), duration)
 
 
 def _motion(
-    known: Mapping[str, Vector | float], side: str, setting: Setting, where: str
+    known: Mapping[str, Vector | float], side: str, setting: SweepSetting, where: str
 ) -> tuple[Vector, Vector, Vector | None]:
     spin, pivot = known.get(f"omega{side}"), known.get(f"pivot{side}")
     if pivot is not None and spin is None:
@@ -94,7 +94,9 @@ def _motion(
     return velocity, spin, pivot
 
 
-def _pose(known: Mapping[str, Vector | float], side: str, setting: Setting, where: str) -> Pose:
+def _pose(
+    known: Mapping[str, Vector | float], side: str, setting: SweepSetting, where: str
+) -> Pose:
     try:
         return _posed(known.get(f"rotate{side}"), known.get(f"translate{side}"), setting.degrees)
     except MotionError as fault:
@@ -109,7 +111,7 @@ def _posed(rotate: Vector | None, translate: Vector | None, degrees: bool) -> Po
 
 
 def answer_questions(
-    trees: Trees, questions: Sequence[Question], accuracy: Accuracy, threads: int
+    trees: Trees, questions: Sequence[RowQuestion], accuracy: Accuracy, threads: int
 ) -> Outcome:
     """Return the answers of understood rows.
 
@@ -130,11 +132,11 @@ def answer_questions(
 
 
 def _batch(
-    trees: Trees, questions: Sequence[Question], poses: Sequence[tuple[Pose, Pose]]
+    trees: Trees, questions: Sequence[RowQuestion], poses: Sequence[tuple[Pose, Pose]]
 ) -> Batch:
     pivots: dict[tuple[int, int], Vector] = {}
 
-    def numbers(asked: Question, side: int) -> tuple[float, ...]:
+    def numbers(asked: RowQuestion, side: int) -> tuple[float, ...]:
         velocity, spin, pivot = asked.motions[side]
         if not any(spin):
             pivot = _NOTHING  # as of a question of its own: nothing turns about it
@@ -154,7 +156,7 @@ def _batch(
     return Batch(poses, motions_a, motions_b, durations)
 
 
-def _bodies(trees: Trees, asked: Question) -> tuple[Body, Body, float]:
+def _bodies(trees: Trees, asked: RowQuestion) -> tuple[Body, Body, float]:
     a, b = (
         Body(tree, pose, Motion(*motion))
         for tree, pose, motion in zip(trees, asked.poses, asked.motions, strict=True)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from obbcli.questions.pair_question import Trees
     from obbcli.sweeps.result_lines import Block
     from obbcli.sweeps.row_fields import Row
-    from obbcli.sweeps.row_questions import Setting
+    from obbcli.sweeps.row_questions import SweepSetting
 
 # s: what an interruption may lose, and how often progress shows.
 _CHUNK_SECONDS = 0.5
@@ -50,7 +50,9 @@ def started(rows: Iterator[Row]) -> Iterator[Row]:
     return chain([first], rows)
 
 
-def answered(trees: Trees, rows: Iterator[Row], setting: Setting, threads: int) -> Iterator[Block]:
+def answered(
+    trees: Trees, rows: Iterator[Row], setting: SweepSetting, threads: int
+) -> Iterator[Block]:
     """Yield the results of rows in order, some at a time.
 
     Raises:

@@ -87,7 +87,7 @@ def sweep(
     count = _row_count(columns, seconds)
     trees = trees_of(bodies)
     placed = tuple(Body(tree, body.pose) for tree, body in zip(trees, bodies, strict=True))
-    question = _Question(trees, (placed[0], placed[1]), columns, seconds, count)
+    question = _SweepQuestion(trees, (placed[0], placed[1]), columns, seconds, count)
     outcome = question.answer(accuracy, thread_count(threads))
     for row, fault in sorted(outcome.errors.items()):
         raise type(fault)(f"row {row}: {fault.where}", fault.fault, fault.remedy)
@@ -108,7 +108,7 @@ class _Column(NamedTuple):
         return Motion(velocity, spin, None if np.isnan(pivot[0]) else pivot)
 
 
-class _Question(NamedTuple):
+class _SweepQuestion(NamedTuple):
     trees: Trees
     placed: tuple[Body, Body]
     columns: tuple[_Column, _Column]

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.accuracy import AccuracyOptions
     from obbcli.cli.options.option import CommonOptions
-    from obbcli.cli.options.placement import Question
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.placement import QuestionOptions
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.motion.body import Body
     from obbcli.questions.pair_question import PairQuestion
     from obbcli.report.record import Record
@@ -71,7 +71,7 @@ Examples:
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
-def command(asked: Asked, **flags: Any) -> int:
+def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """Do A and B touch, at rest or at any time of a motion? Touching counts; the answer is exact.
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. Triangles are
@@ -95,7 +95,7 @@ def _streams(common: CommonOptions, flags: dict[str, Any]) -> bool:
 
 
 def _refuse_contradictions(
-    question: Question, accuracy: AccuracyOptions, flags: dict[str, Any]
+    question: QuestionOptions, accuracy: AccuracyOptions, flags: dict[str, Any]
 ) -> None:
     """Refuse flags of which one would be ignored."""
     for name in ("limit", "max_memory"):
@@ -120,7 +120,10 @@ def _refuse_contradictions(
 
 
 def _ask(
-    asked: Asked, question: Question, files: tuple[Input, Input], flags: dict[str, Any]
+    asked: TwoBodyOptions,
+    question: QuestionOptions,
+    files: tuple[Input, Input],
+    flags: dict[str, Any],
 ) -> Record:
     """Put the question and return its record."""
     from obbcli.report.collide import collide_record
@@ -154,7 +157,7 @@ def _pairs(
     Raises:
         UnresolvedError: their list needs more memory than allowed.
     """
-    from obbcli.questions.collide import triangle_pairs
+    from obbcli.questions.triangle_pairs import triangle_pairs
 
     room = None if max_memory is None else max_memory // _BYTES_A_PAIR
     # One more than asked for tells whether the list was cut.

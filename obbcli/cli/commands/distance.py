@@ -14,8 +14,8 @@ from obbcli.cli.output import emit
 if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.accuracy import AccuracyOptions
-    from obbcli.cli.options.placement import MotionOptions, Question
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.placement import MotionOptions, QuestionOptions
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.report.record import Record
 
 # The other fields of `Accuracy` say nothing about bodies at rest.
@@ -36,7 +36,7 @@ Examples:
 """,
 )
 @about_two("Exit with 1 where they touch, 0 where not.")
-def command(asked: Asked) -> int:
+def command(asked: TwoBodyOptions) -> int:
     """How far apart are the surfaces of A and B, and where are they nearest?
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. The distance
@@ -72,7 +72,7 @@ def _option(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _ask(asked: Asked, question: Question, files: tuple[Input, Input]) -> Record:
+def _ask(asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, Input]) -> Record:
     """Put the question and return its record."""
     from obbcli.questions.distance import measure
     from obbcli.report.distance import distance_record

@@ -23,8 +23,8 @@ from obbcli.cli.output import emit, remark
 if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.option import CommonOptions
-    from obbcli.cli.options.placement import Question
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.placement import QuestionOptions
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.report.record import Record
 
 
@@ -50,7 +50,7 @@ Examples:
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
-def command(asked: Asked, **flags: Any) -> int:
+def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """When do A and B first touch as they move, where, and with which triangles?
 
     A and B are mesh files or .obbt trees; one of them may be - for standard input. The time comes
@@ -76,7 +76,10 @@ def _refuse_lists(flags: dict[str, Any]) -> None:
 
 
 def _ask(
-    asked: Asked, question: Question, files: tuple[Input, Input], flags: dict[str, Any]
+    asked: TwoBodyOptions,
+    question: QuestionOptions,
+    files: tuple[Input, Input],
+    flags: dict[str, Any],
 ) -> Record:
     """Put the question and return its record."""
     from obbcli.cli.listing import list_contacts

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene
-    from obbcli.scene.contact_stream import Course
+    from obbcli.scene.contact_stream import ContactStream
     from obbcli.scene.results import SceneContact
 
     Stamps: TypeAlias = dict[str, tuple[int, ...] | None]
@@ -154,7 +154,7 @@ def _accuracy(accuracy: Accuracy, options: AccuracyOptions) -> Accuracy:
     return asked
 
 
-def _ask(scene: Scene, wanted: _Wanted) -> Course:
+def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
     """Return the question, not yet advanced."""
     names = {body.name for body in scene.bodies}
     pairs = [_pair(text, names) for text in wanted.pairs] or None
@@ -178,7 +178,7 @@ def _pair(text: str, names: set[str]) -> tuple[str, str]:
     return known[0]
 
 
-def _run(found: Course, wanted: _Wanted, *, progress: bool) -> Answer:
+def _run(found: ContactStream, wanted: _Wanted, *, progress: bool) -> Answer:
     """Return the answer; after Ctrl-C what is known by then."""
     from obbcli.answers.status import Status
     from obbcli.report.scene import Answer
@@ -208,7 +208,7 @@ def _run(found: Course, wanted: _Wanted, *, progress: bool) -> Answer:
 def _record(
     source: Source,
     scene: Scene,
-    found: Course,
+    found: ContactStream,
     answer: Answer,
     stamps: Stamps | None,
 ) -> Record:

@@ -19,7 +19,7 @@ from obbcli.cli.progress import trying
 from obbcli.files import write_whole
 
 if TYPE_CHECKING:
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.report.record import Record
     from obbcli.report.stability import Studied
     from obbcli.study.stability.battery import Battery
@@ -47,7 +47,7 @@ Examples:
     help="Draw what held into FILE, .svg or .png; needs matplotlib.",
 )
 @about_two("Exit with 1 where they touch, 0 where proven apart; 6 where anything is broken.")
-def command(asked: Asked, plot: str | None) -> int:
+def command(asked: TwoBodyOptions, plot: str | None) -> int:
     """Ask first-contact of A and B again at the extremes, and say which answers hold.
 
     The world is scaled to the ends of the doubles, shifted, turned and hurried; bodies swapped,
@@ -82,7 +82,7 @@ def command(asked: Asked, plot: str | None) -> int:
     return _exit_code(record["result"], asked=asked.exit_code)
 
 
-def _check_plot(name: str, asked: Asked) -> None:
+def _check_plot(name: str, asked: TwoBodyOptions) -> None:
     """Refuse a plot that could not be drawn, before anything is asked.
 
     Raises:

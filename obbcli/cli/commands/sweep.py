@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from obbcli.cli.inputs import Input
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.questions.pair_question import Trees
     from obbcli.report.record import Record
     from obbcli.report.sweep import Swept
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from obbcli.sweeps.result_lines import Block
     from obbcli.sweeps.results_file import ResultsFile
     from obbcli.sweeps.row_fields import Row
-    from obbcli.sweeps.row_questions import Setting
+    from obbcli.sweeps.row_questions import SweepSetting
 
     Answerer: TypeAlias = Callable[[Iterator[Row]], Iterator[Block]]
 
@@ -94,7 +94,7 @@ Examples:
 )
 @click.argument("queries", metavar="QUERIES", type=PathName())
 @sweep_options
-def command(asked: Asked, queries: str, how: SweepOptions) -> int:
+def command(asked: TwoBodyOptions, queries: str, how: SweepOptions) -> int:
     """Ask first-contact of A and B for every row of QUERIES, a CSV or JSONL file.
 
     Columns or keys are named as the options: vel, omega, pivot, translate, rotate, the same with
@@ -113,7 +113,7 @@ def command(asked: Asked, queries: str, how: SweepOptions) -> int:
     return _exit_code(swept.tally, asked=asked.exit_code)
 
 
-def _output(asked: Asked, queries: str, how: SweepOptions) -> Path:
+def _output(asked: TwoBodyOptions, queries: str, how: SweepOptions) -> Path:
     """Return where results go.
 
     Raises:
@@ -149,7 +149,9 @@ def _check_cluster(how: SweepOptions) -> None:
         raise UsageError(f"--{given[0]}", "needs the package distributed", remedy)
 
 
-def _sweep(asked: Asked, name: str, how: SweepOptions, output: Path) -> tuple[Record, Swept]:
+def _sweep(
+    asked: TwoBodyOptions, name: str, how: SweepOptions, output: Path
+) -> tuple[Record, Swept]:
     """Answer all rows; return the header of the results and how it went."""
     from obbcli.report.sweep import Swept
     from obbcli.sweeps.query_file import opened
@@ -183,7 +185,7 @@ def _sweep(asked: Asked, name: str, how: SweepOptions, output: Path) -> tuple[Re
 
 
 @contextmanager
-def _answerer(how: SweepOptions, trees: Trees, setting: Setting) -> Iterator[Answerer]:
+def _answerer(how: SweepOptions, trees: Trees, setting: SweepSetting) -> Iterator[Answerer]:
     """Give what turns rows into results: this process, or a cluster."""
     if how.workers is None and how.scheduler is None:
         from obbcli.sweeps.stream import answered
@@ -196,22 +198,22 @@ def _answerer(how: SweepOptions, trees: Trees, setting: Setting) -> Iterator[Ans
         yield partial(answered_by, client, trees, setting=setting)
 
 
-def _setting(asked: Asked) -> Setting:
+def _setting(asked: TwoBodyOptions) -> SweepSetting:
     """Return what all rows have in common.
 
     Raises:
         UsageError: a number is refused, or an option has no meaning with the others.
     """
-    from obbcli.sweeps.row_questions import Setting
+    from obbcli.sweeps.row_questions import SweepSetting
 
     asked.pose.poses()  # refuses what is no rotation
     given = asked.pose._asdict() | asked.motion._asdict()
     degrees = given.pop("degrees")
     defaults = {name: value for name, value in given.items() if value is not None}
-    return Setting(defaults, degrees, asked.accuracy.accuracy())
+    return SweepSetting(defaults, degrees, asked.accuracy.accuracy())
 
 
-def _read(asked: Asked) -> tuple[Input, Input]:
+def _read(asked: TwoBodyOptions) -> tuple[Input, Input]:
     """Return A and B, with what is needed to know them again."""
     return read_pair(
         asked.a,
@@ -222,7 +224,9 @@ def _read(asked: Asked) -> tuple[Input, Input]:
     )
 
 
-def _header(asked: Asked, setting: Setting, files: tuple[Input, Input], queries: Queries) -> Record:
+def _header(
+    asked: TwoBodyOptions, setting: SweepSetting, files: tuple[Input, Input], queries: Queries
+) -> Record:
     """Return the first line of the results."""
     from obbcli.report.sweep import header_record
     from obbcli.sweeps.results_file import with_digest

@@ -22,7 +22,7 @@ from obbcli.cli.options.option import (
 from obbcli.cli.options.placement import (
     MotionOptions,
     PoseOptions,
-    Question,
+    QuestionOptions,
     motion_options,
     pose_options,
 )
@@ -52,7 +52,7 @@ class _Wanted(NamedTuple):
     plot: str | None
 
 
-class _Asked(NamedTuple):
+class _TradeoffOptions(NamedTuple):
     """All that the command is told."""
 
     a: str
@@ -125,7 +125,7 @@ Examples:
 )
 @gathered(
     "asked",
-    _Asked,
+    _TradeoffOptions,
     (
         click.argument("a", metavar="A", type=PathName()),
         click.argument("b", metavar="B", type=PathName()),
@@ -137,7 +137,7 @@ Examples:
         common_options(),
     ),
 )
-def command(asked: _Asked) -> int:
+def command(asked: _TradeoffOptions) -> int:
     """Measure what speed costs in accuracy: tolerances, depth limits, samples, ways to build trees.
 
     Errors are against the certified answer, and every bound that an answer claims is put to the
@@ -145,7 +145,7 @@ def command(asked: _Asked) -> int:
     accuracy options is measured as well. Trees (.obbt) are used as they are. Ctrl-C prints what was
     measured by then.
     """
-    question = Question.of(asked.pose, asked.motion, asked.accuracy)
+    question = QuestionOptions.of(asked.pose, asked.motion, asked.accuracy)
     _check_places(asked)
     shapes, sources = _read(asked)
     with naming_options(question):
@@ -156,7 +156,7 @@ def command(asked: _Asked) -> int:
     return _exit_code(record["result"])
 
 
-def _check_places(asked: _Asked) -> None:
+def _check_places(asked: _TradeoffOptions) -> None:
     """Refuse what could not be written, before anything is measured.
 
     Raises:
@@ -179,7 +179,7 @@ def _check_places(asked: _Asked) -> None:
 
 
 def _read(
-    asked: _Asked,
+    asked: _TradeoffOptions,
 ) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
     """Return A and B, and what a record says of them."""
     from obbcli.files import stamp_of
@@ -203,7 +203,7 @@ def _read(
 
 
 def _study(
-    question: Question, shapes: tuple[Mesh | ObbTree, Mesh | ObbTree], budget: float
+    question: QuestionOptions, shapes: tuple[Mesh | ObbTree, Mesh | ObbTree], budget: float
 ) -> Study:
     from obbcli.motion.body import Body
     from obbcli.study.tradeoff.measuring import Study
@@ -215,7 +215,7 @@ def _study(
     return Study(a, b, question.duration, question.accuracy, budget=budget)
 
 
-def _run(study: Study, asked: _Asked) -> bool:
+def _run(study: Study, asked: _TradeoffOptions) -> bool:
     """Measure; return whether Ctrl-C ended it.
 
     Raises:
@@ -233,7 +233,7 @@ def _run(study: Study, asked: _Asked) -> bool:
 
 
 def _record(
-    asked: _Asked,
+    asked: _TradeoffOptions,
     study: Study,
     sources: tuple[Source, Source],
     *,
@@ -251,7 +251,7 @@ def _record(
     return tradeoff_record(setting, found, wording, limits, is_interrupted=is_interrupted)
 
 
-def _wording(asked: _Asked, bodies: tuple[Body, Body]) -> Wording:
+def _wording(asked: _TradeoffOptions, bodies: tuple[Body, Body]) -> Wording:
     """Return what command lines repeat of this one."""
     from obbcli.mesh import Mesh
     from obbcli.report.tradeoff import Wording, number
@@ -267,7 +267,7 @@ def _wording(asked: _Asked, bodies: tuple[Body, Body]) -> Wording:
     return Wording((asked.a, asked.b), are_trees, words)
 
 
-def _show(record: Record, asked: _Asked) -> None:
+def _show(record: Record, asked: _TradeoffOptions) -> None:
     """Write the answer and the plot."""
     from obbcli.report.tradeoff_tables import tradeoff_bare, tradeoff_tables
 

@@ -27,7 +27,7 @@ from obbcli.files import write_whole
 
 if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
-    from obbcli.cli.options.two_bodies import Asked
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.cli.picture import ViewOptions
     from obbcli.report.record import Record
     from obbcli.report.view import Output
@@ -62,7 +62,7 @@ Examples:
     is_b_required=False,
     takes_dash=False,
 )
-def command(asked: Asked, how: ViewOptions, solid: bool) -> int:
+def command(asked: TwoBodyOptions, how: ViewOptions, solid: bool) -> int:
     """Draw the boxes of A's tree over its mesh, or A and B as they move and first touch.
 
     A .png is painted without a display, a .html is one file that turns under the mouse and opens
@@ -84,7 +84,7 @@ def command(asked: Asked, how: ViewOptions, solid: bool) -> int:
     return code
 
 
-def _target(asked: Asked, how: ViewOptions) -> Path:
+def _target(asked: TwoBodyOptions, how: ViewOptions) -> Path:
     """Return where the picture goes, once it is known that it can be drawn there.
 
     Raises:
@@ -126,7 +126,7 @@ def _check_look(how: ViewOptions, suffix: str) -> None:
         raise UsageError("--zoom", f"is beyond {_MOST_ZOOM:,}", "take less")
 
 
-def _refuse_questions(asked: Asked, how: ViewOptions, *, solid: bool) -> None:
+def _refuse_questions(asked: TwoBodyOptions, how: ViewOptions, *, solid: bool) -> None:
     """Refuse what is asked about two bodies where there is one."""
     given = asked.pose._asdict() | asked.motion._asdict() | asked.accuracy._asdict()
     given |= {"solid": solid, "exit_code": asked.exit_code, "ghosts": how.ghosts}
@@ -138,7 +138,7 @@ def _refuse_questions(asked: Asked, how: ViewOptions, *, solid: bool) -> None:
         raise UsageError("--node", "cannot be drawn together with --level", "leave one out")
 
 
-def _draw_boxes(asked: Asked, how: ViewOptions, target: Path) -> Record:
+def _draw_boxes(asked: TwoBodyOptions, how: ViewOptions, target: Path) -> Record:
     """Draw the boxes of a tree and return the record."""
     common = asked.common
     file = read(
@@ -167,7 +167,7 @@ def _draw_boxes(asked: Asked, how: ViewOptions, target: Path) -> Record:
     return with_load_time(record, [file])
 
 
-def _draw_contact(asked: Asked, how: ViewOptions, target: Path, *, solid: bool) -> Record:
+def _draw_contact(asked: TwoBodyOptions, how: ViewOptions, target: Path, *, solid: bool) -> Record:
     """Ask for the first contact, draw it and return the record."""
     for name, value in (("--level", how.level), ("--node", how.node)):
         if value is not None:

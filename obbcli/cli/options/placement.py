@@ -138,7 +138,7 @@ def _names(options: PoseOptions | MotionOptions) -> list[str]:
     return [f"--{name.replace('_', '-')}" for name, value in values if value not in (None, False)]
 
 
-class Question(NamedTuple):
+class QuestionOptions(NamedTuple):
     """What is asked about two bodies, all of it understood and checked before a file is read."""
 
     poses: tuple[Pose, Pose]
@@ -148,7 +148,9 @@ class Question(NamedTuple):
     given: Mapping[str, Sequence[str]]
 
     @classmethod
-    def of(cls, pose: PoseOptions, motion: MotionOptions, accuracy: AccuracyOptions) -> Question:
+    def of(
+        cls, pose: PoseOptions, motion: MotionOptions, accuracy: AccuracyOptions
+    ) -> QuestionOptions:
         """Return the question that options ask; `given` names the options of pose and motion.
 
         Raises:

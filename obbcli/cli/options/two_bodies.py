@@ -21,7 +21,7 @@ from obbcli.cli.options.option import (
 from obbcli.cli.options.placement import (
     MotionOptions,
     PoseOptions,
-    Question,
+    QuestionOptions,
     motion_options,
     pose_options,
 )
@@ -44,7 +44,7 @@ QUESTION = "Question"
 """The heading over the options of one command about A and B alone."""
 
 
-class Asked(NamedTuple):
+class TwoBodyOptions(NamedTuple):
     """What every command about A and B is told."""
 
     a: str
@@ -56,13 +56,13 @@ class Asked(NamedTuple):
     no_verify: bool
     common: CommonOptions
 
-    def question(self) -> Question:
+    def question(self) -> QuestionOptions:
         """Return the question.
 
         Raises:
             UsageError: a number is refused, or an option has no meaning with the others.
         """
-        return Question.of(self.pose, self.motion, self.accuracy)
+        return QuestionOptions.of(self.pose, self.motion, self.accuracy)
 
     def read(self) -> tuple[Input, Input]:
         """Return A and B.
@@ -110,7 +110,7 @@ def about_two(
     """
     return gathered(
         "asked",
-        Asked,
+        TwoBodyOptions,
         (
             click.argument("a", metavar="A", type=PathName()),
             click.argument(
@@ -176,7 +176,7 @@ def _proven(query: Query) -> str:
 
 
 @contextmanager
-def naming_options(question: Question) -> Iterator[None]:
+def naming_options(question: QuestionOptions) -> Iterator[None]:
     """Name the options behind a refused pose or motion: what is typed is usage."""
     try:
         yield
