@@ -47,9 +47,9 @@ class UnresolvedError(ObbError):
     """A limit was reached before all that was asked was known.
 
     Args:
-        where: as of every error.
-        fault: likewise.
-        remedy: likewise.
+        where: the place of the fault.
+        fault: what was found and what was wanted.
+        remedy: what the user can do.
         time: s; all before it is known. None where that is not a matter of time.
     """
 

@@ -115,7 +115,7 @@ class PrimitiveContacts:
         smooth_normal_a: float64 (M, 3).
         smooth_normal_b: float64 (M, 3).
         axis_kind: str (M,): `SeparatingAxis.kind`, empty where the shapes overlap at the start.
-        feature: str (M,), empty likewise.
+        feature: str (M,), empty where the shapes overlap at the start.
     """
 
     rows: NDArray[np.int64]

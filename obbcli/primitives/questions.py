@@ -58,7 +58,7 @@ def intersects(
 
     Args:
         shape_a: `Obb` or `Triangle`, one or N.
-        shape_b: the same.
+        shape_b: `Obb` or `Triangle`, one or N.
         velocity_a: (3,) or (N, 3), units of length a second; 0: at rest.
         velocity_b: the same of B.
         duration: s, at least 0; one or (N,). 0 asks about the shapes where they are.
@@ -102,7 +102,7 @@ def first_contact(
 
     Args:
         shape_a: `Obb` or `Triangle`, one or N.
-        shape_b: the same.
+        shape_b: `Obb` or `Triangle`, one or N.
         velocity_a: (3,) or (N, 3), units of length a second; 0: at rest.
         velocity_b: the same of B.
         duration: s, at least 0; one or (N,).

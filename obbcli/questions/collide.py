@@ -36,7 +36,7 @@ def collide(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: limits and coarseness; None: the exact answer.
         solid: whether a body inside the other at t = 0 is contact too, without touching: closed

@@ -52,7 +52,7 @@ def contacts(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of each contact. Its limits hold for the iterator as a whole.
         limit: at most so many contacts.
@@ -92,7 +92,7 @@ def search_contacts(pair: PairQuestion, search: Search) -> Iterator[Contact]:
     """Yield what `contacts` yields, as far as a search goes, whose limits stand for `accuracy`'s.
 
     Raises:
-        MotionError: as `contacts` does; the other errors likewise.
+        ObbError: as `contacts` does.
     """
     _refuse_sampled(pair.accuracy)
     found = (_of_motion if pair.is_steady else _of_path)(pair, search)

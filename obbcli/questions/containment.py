@@ -39,7 +39,7 @@ class Containment:
 
     Args:
         bodies: A and B as they are at t = 0.
-        trees: theirs.
+        trees: the trees of A and B.
         at_start: whether their surfaces touch at t = 0; advanced where that is not known yet.
 
     Raises:

@@ -33,7 +33,7 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         accuracy: limits and coarseness; None: as close as doubles allow.
 
     Raises:

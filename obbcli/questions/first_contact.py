@@ -72,7 +72,7 @@ class Query:
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; the closed interval [0, duration] is asked about. None: 1 where a body moves,
             else 0.
         accuracy: what is asked of the answer; its `max_iterations` and `timeout` are left to the
@@ -247,7 +247,7 @@ def first_contact(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of the answer, and the limits after which it is `unresolved`.
         solid: whether a body inside the other at t = 0 is contact too, without touching: closed

@@ -31,7 +31,7 @@ class PairQuestion(NamedTuple):
     Attributes:
         bodies: A and B. A motion that is steady after all, such as a path of one pose, is replaced
             by the constant motion that it is.
-        trees: theirs.
+        trees: the trees of A and B.
         duration: s; the closed interval [0, duration] is asked about.
         accuracy: what is asked of the answer.
         load_seconds: s of wall time that it took to read meshes and trees.

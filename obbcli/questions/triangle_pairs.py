@@ -47,7 +47,7 @@ def triangle_pairs(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         limit: stop after so many pairs, and return those, sorted. Which ones depends on the trees.
             One thread looks for them.
         threads: at most so many; None: as many as this process may use cores. They change nothing
@@ -101,7 +101,7 @@ def triangle_pair_blocks(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         most: pairs a block, at most; more only where a single triangle of A has more.
         threads: at most so many; None: as many as this process may use cores. They change nothing
             but the time it takes.

@@ -45,7 +45,8 @@ class Choice(NamedTuple):
 
     Attributes:
         level: all at this depth; None where it was not asked for.
-        node: the last box above each triangle under this one; None likewise.
+        node: the last box above each triangle under this one; None where it was not
+            asked for.
     """
 
     level: int | None

@@ -137,8 +137,8 @@ def find_candidates(
 
     Args:
         bodies: those asked about.
-        shapes: theirs, loaded.
-        places: theirs in the scene, increasing.
+        shapes: the loaded shape of each body.
+        places: the place of each body in the scene, increasing.
         ignored: what is not asked about.
         duration: s.
         accuracy: of the questions to come.

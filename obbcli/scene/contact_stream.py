@@ -19,7 +19,7 @@ class ContactStream(Iterator[SceneContact]):
         asked: bodies and pairs.
 
     Attributes:
-        asked: as given.
+        asked: the bodies and pairs of the question.
     """
 
     def __init__(self, asked: ScenePairs) -> None:

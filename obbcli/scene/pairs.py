@@ -29,7 +29,7 @@ class ScenePairs:
 
     Attributes:
         bodies: those that pairs are of, in the order of the scene.
-        shapes: theirs, loaded.
+        shapes: the loaded shape of each body.
         duration: s.
         accuracy: of each answer.
         candidates: the pairs that may meet.

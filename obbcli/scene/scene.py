@@ -41,7 +41,7 @@ class Scene:
 
     Attributes:
         bodies: the bodies, in order.
-        ignore: as given.
+        ignore: the pairs that are not asked about, checked.
         duration: s.
         accuracy: as used.
 

@@ -68,7 +68,7 @@ def swept_boxes(
 
     Args:
         bodies: the bodies.
-        shapes: theirs, loaded.
+        shapes: the loaded shape of each body.
         duration: s.
         accuracy: where boxes stand for triangles they reach further than these; sampled frames are
             other rotations than the true ones.

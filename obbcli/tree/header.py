@@ -51,7 +51,8 @@ class Description:
         leaf_size: a node of so many triangles is a leaf.
         max_depth: the depth at which a node is a leaf; None: no limit.
         source: name of the mesh file; None for a mesh made in code.
-        source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None likewise.
+        source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None for a
+            mesh made in code.
         tool_version: the obbtree that built it.
         notes: what of the mesh file was taken with a change, a sentence each.
     """

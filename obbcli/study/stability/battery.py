@@ -48,7 +48,7 @@ class Battery:
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of every answer. None: the defaults.
 
@@ -200,7 +200,7 @@ def stability(
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        b: likewise.
+        b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of every answer; an extreme may take 200 times the queue pops of the
             question itself, and at least 50,000, as far as `max_iterations` allows. None: the

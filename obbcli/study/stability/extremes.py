@@ -41,7 +41,7 @@ class Changed(NamedTuple):
         why: how the bound was derived.
         is_same: whether the answer must have the same bits.
         length: a length of the original in the changed question's unit.
-        clock: likewise of a time; exact.
+        clock: a time of the original on the changed question's clock; exact.
         is_related: whether the original's answer holds of it; if not, it is checked by itself.
     """
 
@@ -60,7 +60,7 @@ class Extreme(NamedTuple):
     Attributes:
         family: what is changed.
         name: by how much, in words.
-        magnitude: likewise as a number, for the axis of a plot.
+        magnitude: by how much, as a number for the axis of a plot.
         change: makes the changed question.
     """
 
