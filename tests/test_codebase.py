@@ -5,9 +5,8 @@ from __future__ import annotations
 import ast
 import re
 import subprocess
+from functools import cache
 from pathlib import Path
-
-import pytest
 
 import obbcli
 
@@ -47,6 +46,7 @@ TOP_LEVEL = {
 }
 
 
+@cache
 def parse(module: str) -> ast.Module:
     """Return the syntax tree of a file of the package."""
     return ast.parse((ROOT / module).read_text(encoding="utf-8"), module)
@@ -87,18 +87,19 @@ def project_files() -> list[str]:
     return [name for name in names if (ROOT / name).is_file()]
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_module_belongs_to_a_known_layer(module: str) -> None:
-    assert layer(module) in RANKS
+def test_modules_belong_to_known_layers() -> None:
+    assert [module for module in MODULES if layer(module) not in RANKS] == []
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_module_imports_lower_layers_only(module: str) -> None:
-    rank = RANKS[layer(module)]
+def test_modules_import_lower_layers_only() -> None:
+    above = {
+        module: sorted(
+            name for name in layers_imported(module) if RANKS[name] > RANKS[layer(module)]
+        )
+        for module in MODULES
+    }
 
-    above = {name for name in layers_imported(module) if RANKS[name] > rank}
-
-    assert not above
+    assert {module: names for module, names in above.items() if names} == {}
 
 
 def test_layers_import_each_other_in_no_circle() -> None:
@@ -144,48 +145,51 @@ def modules_imported(module: str) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_only_the_kernels_package_imports_the_extension(module: str) -> None:
-    touches = any("_core" in name.split(".") for name in imported(parse(module)))
+def test_only_the_kernels_package_imports_the_extension() -> None:
+    def touches(module: str) -> bool:
+        return any("_core" in name.split(".") for name in imported(parse(module)))
 
-    assert touches == (module == "obbcli/kernels/__init__.py")
-
-
-@pytest.mark.parametrize("source", KERNEL_SOURCES)
-def test_only_bindings_include_nanobind_or_python(source: str) -> None:
-    text = (ROOT / source).read_text(encoding="utf-8")
-
-    includes = re.findall(r'#\s*include\s*[<"]((?:nanobind/|Python\.h)[^>"]*)', text)
-
-    assert not includes or Path(source).parent.name == "bindings"
+    assert [module for module in MODULES if touches(module)] == ["obbcli/kernels/__init__.py"]
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_only_the_command_line_exits_or_prints(module: str) -> None:
-    if layer(module) in {"cli", "__main__"}:
-        return
+def test_only_bindings_include_nanobind_or_python() -> None:
+    def includes(source: str) -> bool:
+        text = (ROOT / source).read_text(encoding="utf-8")
+        return bool(re.search(r'#\s*include\s*[<"](?:nanobind/|Python\.h)[^>"]*', text))
 
-    calls = [ast.unparse(n.func) for n in ast.walk(parse(module)) if isinstance(n, ast.Call)]
+    inside = [name for name in KERNEL_SOURCES if Path(name).parent.name != "bindings"]
+    assert [name for name in inside if includes(name)] == []
 
-    assert not {"print", "exit", "quit", "sys.exit", "os._exit"} & set(calls)
+
+def test_only_the_command_line_exits_or_prints() -> None:
+    def ends(module: str) -> bool:
+        calls = {ast.unparse(n.func) for n in ast.walk(parse(module)) if isinstance(n, ast.Call)}
+        return bool({"print", "exit", "quit", "sys.exit", "os._exit"} & calls)
+
+    below = [module for module in MODULES if layer(module) not in {"cli", "__main__"}]
+    assert [module for module in below if ends(module)] == []
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_public_things_have_docstrings(module: str) -> None:
+def test_public_things_have_docstrings() -> None:
+    assert [name for module in MODULES for name in undocumented(module)] == []
+
+
+def undocumented(module: str) -> list[str]:
+    """Return what is public in a module and has no docstring."""
     tree = parse(module)
-    missing = [] if ast.get_docstring(tree) else ["module"]
+    missing = [] if ast.get_docstring(tree) else [module]
 
     def visit(body: list[ast.stmt]) -> None:
         for node in body:
             kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
             if isinstance(node, kinds) and not node.name.startswith("_"):
                 if not ast.get_docstring(node) and not is_overload(node):
-                    missing.append(node.name)
+                    missing.append(f"{module}: {node.name}")
                 if isinstance(node, ast.ClassDef):
                     visit(node.body)
 
     visit(tree.body)
-    assert not missing
+    return missing
 
 
 def is_overload(node: ast.stmt) -> bool:
@@ -196,20 +200,18 @@ def is_overload(node: ast.stmt) -> bool:
 
 # Compilers align them by the machine that the rest of a file is compiled for, while functions for
 # wider registers load them as aligned for these.
-@pytest.mark.parametrize("source", [name for name in KERNEL_SOURCES if name.endswith(".hpp")])
-def test_members_of_wide_registers_say_how_they_are_aligned(source: str) -> None:
-    text = (ROOT / source).read_text(encoding="utf-8")
+def test_members_of_wide_registers_say_how_they_are_aligned() -> None:
+    member = re.compile(r"^ +(?:(?:std::array<)?Four(?:Mask)?\b[^(=\n]*);", re.MULTILINE)
 
-    members = re.findall(r"^ +(?:(?:std::array<)?Four(?:Mask)?\b[^(=\n]*);", text, re.MULTILINE)
-
-    assert members == []
+    headers = [name for name in KERNEL_SOURCES if name.endswith(".hpp")]
+    assert [n for n in headers if member.search((ROOT / n).read_text(encoding="utf-8"))] == []
 
 
-@pytest.mark.parametrize("name", MODULES + KERNEL_SOURCES)
-def test_file_is_not_too_long(name: str) -> None:
-    lines = (ROOT / name).read_text(encoding="utf-8").count("\n")
+def test_files_are_not_too_long() -> None:
+    def length(name: str) -> int:
+        return (ROOT / name).read_text(encoding="utf-8").count("\n")
 
-    assert lines <= LONGEST_FILE
+    assert [name for name in MODULES + KERNEL_SOURCES if length(name) > LONGEST_FILE] == []
 
 
 def test_no_module_hides_a_public_function() -> None:

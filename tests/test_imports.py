@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import struct
 import subprocess
@@ -27,25 +28,42 @@ def modules_after(code: str, *arguments: str) -> set[str]:
     return set(child.stdout.rpartition("\n#\n")[2].split())
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        "import obbcli; obbcli.__version__; dir(obbcli)",
-        "from obbcli.cli import main; main(['--version'])",
-        "from obbcli.cli import main; main([])",
-        "from obbcli.cli import main; main(['--help'])",
-        "from obbcli.cli import main; main(['collide', '--help'])",
-        "from obbcli.cli import main; main(['build', '--help'])",
-        "from obbcli.cli import main; main(['scene', '--help'])",
-        "from obbcli.cli import main; main(['sweep', '--help'])",
-        "from obbcli.cli import main; main(['tradeoff', '--help'])",
-        "from obbcli.cli import main; main(['view', '--help'])",
-        "from obbcli.cli import main; main(['view', 'a.stl', '-o', 'a.jpg'])",
-        "from obbcli.cli import main; main(['collide', 'a.stl'])",
-    ],
+QUICK = (
+    "import obbcli; obbcli.__version__; dir(obbcli)",
+    "from obbcli.cli import main; main(['--version'])",
+    "from obbcli.cli import main; main([])",
+    "from obbcli.cli import main; main(['--help'])",
+    "from obbcli.cli import main; main(['collide', '--help'])",
+    "from obbcli.cli import main; main(['build', '--help'])",
+    "from obbcli.cli import main; main(['scene', '--help'])",
+    "from obbcli.cli import main; main(['sweep', '--help'])",
+    "from obbcli.cli import main; main(['tradeoff', '--help'])",
+    "from obbcli.cli import main; main(['view', '--help'])",
+    "from obbcli.cli import main; main(['view', 'a.stl', '-o', 'a.jpg'])",
+    "from obbcli.cli import main; main(['collide', 'a.stl'])",
 )
-def test_quick_commands_import_nothing_heavy(code):
-    assert not modules_after(code) & set(HEAVY)
+# What each loads that it need not; nothing that is loaded goes again.
+LOADED_BY_EACH = """
+import json, sys
+codes, heavy = json.loads(sys.argv[1])
+found = []
+for code in codes:
+    exec(code)
+    found.append([name for name in heavy if name in sys.modules])
+print("\\n" + json.dumps(found))
+"""
+
+
+def test_quick_commands_import_nothing_heavy():
+    child = subprocess.run(
+        [sys.executable, "-c", LOADED_BY_EACH, json.dumps([QUICK, HEAVY])],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+    found = json.loads(child.stdout.splitlines()[-1])
+    assert {code: names for code, names in zip(QUICK, found, strict=True) if names} == {}
 
 
 def test_bare_import_loads_no_part_of_the_package():
@@ -165,10 +183,9 @@ def test_png_is_painted_without_libraries_for_pictures(tmp_path):
     assert not loaded & {"trimesh", "matplotlib", "PIL", "scipy", "meshio", "rich"}
 
 
-@pytest.mark.parametrize("name", obbcli.__all__)
-def test_public_names_are_there(name):
-    assert getattr(obbcli, name) is not None
-    assert name in dir(obbcli)
+def test_public_names_are_there():
+    assert [name for name in obbcli.__all__ if getattr(obbcli, name, None) is None] == []
+    assert set(obbcli.__all__) <= set(dir(obbcli))
 
 
 def test_object_that_outlives_the_interpreter_ends_in_silence():

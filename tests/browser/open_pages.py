@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from matplotlib.image import imread
+from PIL import Image
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
@@ -65,7 +65,8 @@ def opened(browser: str, page: Path) -> tuple[list[str], np.ndarray]:
         timeout=300,
     )
     logged = [line for line in ended.stderr.splitlines() if "CONSOLE" in line]
-    return logged, np.rint(255 * imread(picture)[..., :3]).astype(int)
+    with Image.open(picture) as shown:
+        return logged, np.asarray(shown.convert("RGB")).astype(int)
 
 
 def check(name: str, words: tuple[str, ...], logged: list[str], pixels: np.ndarray) -> None:

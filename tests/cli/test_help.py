@@ -6,7 +6,6 @@ import re
 from typing import TYPE_CHECKING, Any
 
 import click
-import pytest
 
 from obbcli.cli.app import app
 from obbcli.cli.boundary import ExitCode
@@ -18,8 +17,8 @@ COMMANDS = app.list_commands(click.Context(app))
 UNITS = re.compile(r"mesh units|\brad\b|\bs\b|seconds|bytes|pixels|[Ll]evel \w|\bN\b|max-depth")
 
 
-def options() -> Iterator[Any]:
-    """Yield every option of every command that takes a value, with what help says of it."""
+def options() -> Iterator[tuple[str, click.Option, str]]:
+    """Yield every option of every command that takes a value, and what help says of it."""
     for name in COMMANDS:
         command = app.get_command(click.Context(app), name)
         assert command is not None
@@ -28,20 +27,27 @@ def options() -> Iterator[Any]:
             if isinstance(param, click.Option) and not (param.is_flag or param.hidden):
                 record = param.get_help_record(context)
                 assert record is not None
-                yield pytest.param(param, record[1], id=f"{name} {param.opts[0]}")
+                yield f"{name} {param.opts[0]}", param, record[1]
 
 
-@pytest.mark.parametrize(("param", "text"), list(options()))
-def test_options_of_numbers_tell_their_unit(param: click.Option, text: str) -> None:
-    if isinstance(param.type, (click.types.FloatParamType, click.types.IntParamType)):
-        assert UNITS.search(text), text
+def test_options_of_numbers_tell_their_unit() -> None:
+    numbers = (click.types.FloatParamType, click.types.IntParamType)
+    told = [(name, text) for name, param, text in options() if isinstance(param.type, numbers)]
+
+    assert told
+    assert [(name, text) for name, text in told if not UNITS.search(text)] == []
 
 
-@pytest.mark.parametrize(("param", "text"), list(options()))
-def test_options_tell_what_holds_without_them(param: click.Option, text: str) -> None:
+def test_options_tell_what_holds_without_them() -> None:
     # Of a file, address or node that nobody names there is nothing to say.
-    if param.opts[0] not in {"--plot", "--scheduler"} and "required" not in text:
-        assert "[default: " in text, text
+    told = [
+        (name, text)
+        for name, param, text in options()
+        if param.opts[0] not in {"--plot", "--scheduler"} and "required" not in text
+    ]
+
+    assert told
+    assert [(name, text) for name, text in told if "[default: " not in text] == []
 
 
 def test_no_arguments_show_three_commands(obbtree: Callable[..., Any]) -> None:

@@ -103,6 +103,7 @@ def test_interrupt_keeps_what_was_tried(obbtree, monkeypatch):
     assert (ended.error["code"], ended.error["remedy"]) == (130, "not tried: 78 extremes")
 
 
+@pytest.mark.needs("matplotlib")
 def test_interrupt_of_the_first_extreme_draws_an_empty_plot(here, obbtree, monkeypatch):
     def stop(self):
         raise KeyboardInterrupt
@@ -123,6 +124,7 @@ def test_sampled_method_is_refused(obbtree):
     assert ended.err.startswith("error: --method sampled: proves nothing")
 
 
+@pytest.mark.needs("matplotlib")
 @pytest.mark.parametrize(("name", "magic"), [("held.svg", b"<?xml"), ("held.PNG", b"\x89PNG\r\n")])
 def test_plot_shows_every_family(here, obbtree, name, magic):
     pictures = []
@@ -142,7 +144,9 @@ def test_plot_shows_every_family(here, obbtree, name, magic):
     ("words", "code", "fault"),
     [
         (("--plot", "held.pdf"), 2, "is no .svg or .png file"),
-        (("--plot", "gone/held.svg"), 5, "folder"),
+        pytest.param(
+            ("--plot", "gone/held.svg"), 5, "folder", marks=pytest.mark.needs("matplotlib")
+        ),
         (("--plot", "held.svg", "-o", "held.svg"), 2, "where the answer goes"),
     ],
 )

@@ -11,7 +11,6 @@ import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
-import psutil
 import pytest
 from cube_files import cube, obj, stl
 
@@ -87,7 +86,11 @@ def start(here: Path, *words: str, code: str = RUN) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.needs("distributed")
+@pytest.mark.xdist_group("cluster")
 def test_killed_worker_loses_nothing(swept):
+    import psutil
+
     here, whole = swept
     path = here / "killed.jsonl"
     child = start(here, "-o", path.name, "--workers", "2", code=STOPPED)
@@ -112,6 +115,8 @@ def test_killed_worker_loses_nothing(swept):
     assert path.read_bytes() == whole
 
 
+@pytest.mark.needs("distributed")
+@pytest.mark.xdist_group("cluster")
 def test_cluster_that_runs_goes_on_with_a_sweep(swept):
     here, whole = swept
     (here / "begun.jsonl").write_bytes(whole[: len(whole) // 3])
@@ -129,6 +134,8 @@ def test_cluster_that_runs_goes_on_with_a_sweep(swept):
     servant.communicate("\n")
 
 
+@pytest.mark.needs("distributed")
+@pytest.mark.xdist_group("cluster")
 def test_scheduler_that_is_not_there_is_one_clear_error(swept):
     here, _ = swept
     # A port that is taken, and at which nobody listens.

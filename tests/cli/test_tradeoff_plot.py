@@ -11,6 +11,7 @@ import pytest
 from turning_cubes import TURN, asked
 
 
+@pytest.mark.needs("matplotlib")
 @pytest.mark.usefixtures("small")
 @pytest.mark.parametrize(
     "words",

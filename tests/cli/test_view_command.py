@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
-import io
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
-from matplotlib.image import imread
+from png_files import pixels_of
 
 from obbcli import ObbTree
 from obbcli.cli.commands import view
@@ -22,7 +21,7 @@ KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "solid", "resu
 
 def pixels(path):
     """Return the pixels of a PNG file, 0 to 255."""
-    return np.rint(255 * imread(io.BytesIO(Path(path).read_bytes()), format="png")).astype(int)
+    return pixels_of(Path(path).read_bytes())
 
 
 def test_contact_document_has_the_answer_and_what_was_drawn(here, obbtree):

@@ -9,15 +9,14 @@ compared with those that are shown.
 from __future__ import annotations
 
 import doctest
-import io
 import shutil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from manual.consoles import matches, normalised, run, steps
 from manual.pages import ROOT, Block, blocks
-from matplotlib.image import imread
+from png_files import pixels_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,14 +47,9 @@ def test_console_block_prints_and_draws_what_it_shows(block: Block, folder: Path
 
 def assert_looks_like(made: Path, shown: Path) -> None:
     """Compare two pictures; the last bits of a processor may move an edge by a pixel."""
-    one, other = (pixels(path.read_bytes()) for path in (made, shown))
+    one, other = (pixels_of(path.read_bytes()) for path in (made, shown))
     assert one.shape == other.shape
     assert np.abs(one - other).mean() < 0.5
-
-
-def pixels(data: bytes) -> Any:
-    """Return the pixels of a PNG file, 0 to 255."""
-    return np.rint(255 * imread(io.BytesIO(data), format="png")).astype(int)
 
 
 def test_no_console_block_stands_twice() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from manual.pages import PAGES, ROOT, links
-from manual.test_examples import pixels
+from png_files import pixels_of
 
 SAMPLES = ROOT / "sample_meshes"
 SHOWN = {
@@ -48,7 +48,7 @@ def test_each_picture_has_a_command_that_makes_it() -> None:
 def test_picture_is_small_and_shows_something(link: str) -> None:
     data = (ROOT / link).read_bytes()
 
-    red, green, blue = pixels(data).reshape(-1, 3).T
+    red, green, blue = pixels_of(data).reshape(-1, 3).T
 
     assert len(data) < MOST_BYTES
     if Path(link).name in TWO_BODIES:

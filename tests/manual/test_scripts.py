@@ -65,6 +65,7 @@ def lower_the_board(folder: Path) -> None:
     (folder / BOARD).write_text("\n".join(lines) + "\n")
 
 
+@pytest.mark.needs("pre-commit")
 def test_the_hook_lets_pass_what_fits_and_stops_what_does_not(folder: Path) -> None:
     text, _ = example("repos")
     (folder / ".pre-commit-config.yaml").write_text(text)
@@ -82,6 +83,7 @@ def test_the_hook_lets_pass_what_fits_and_stops_what_does_not(folder: Path) -> N
     assert "exit code: 1" in hits.stdout
 
 
+@pytest.mark.needs("pre-commit")
 def test_the_hook_looks_at_its_own_files_alone(folder: Path) -> None:
     (folder / ".pre-commit-config.yaml").write_text(example("repos")[0])
     assert run("pre-commit install && git add .pre-commit-config.yaml", folder).returncode == 0

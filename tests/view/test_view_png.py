@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
+from png_files import pixels_of
 
 from obbcli import Mesh, ObbTree
 from obbcli.view.boxes import boxes_of_level, tree_picture
@@ -51,9 +50,7 @@ def test_png_holds_the_pixels():
     pixels = np.random.default_rng(1).integers(0, 256, (37, 53, 3), dtype=np.uint8)
     pixels[10:20] = np.arange(53, dtype=np.uint8)[:, None]
 
-    read = imread(io.BytesIO(encode(pixels)), format="png")
-
-    np.testing.assert_array_equal(np.rint(255 * read).astype(np.uint8), pixels)
+    np.testing.assert_array_equal(pixels_of(encode(pixels)), pixels)
 
 
 def test_png_of_smooth_shades_is_small():
@@ -254,7 +251,7 @@ def test_picture_of_a_tree_shows_mesh_and_boxes():
 
     data = png_bytes(picture, (160, 120))
 
-    pixels = np.rint(255 * imread(io.BytesIO(data), format="png")).astype(int)
+    pixels = pixels_of(data)
     tinted = [hue(pixel) for pixel in pixels.reshape(-1, 3)]
     leading = int(np.argmax(picture.parts[1].color))
     assert pixels.shape == (120, 160, 3)
