@@ -31,11 +31,15 @@ class Counts(NamedTuple):
 
     def __add__(self, other: Counts) -> Counts:  # type: ignore[override]  # not joined, but added
         """Return what two searches cost together."""
-        return Counts(*(mine + its for mine, its in zip(self, other, strict=True)))
+        a, b, c, d = self
+        p, q, r, s = other
+        return Counts(a + p, b + q, c + r, d + s)
 
     def __sub__(self, other: Counts) -> Counts:
         """Return what this cost beyond the other."""
-        return Counts(*(mine - its for mine, its in zip(self, other, strict=True)))
+        a, b, c, d = self
+        p, q, r, s = other
+        return Counts(a - p, b - q, c - r, d - s)
 
 
 class QueryStats(NamedTuple):

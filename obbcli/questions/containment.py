@@ -88,6 +88,11 @@ class Containment:
         """What the search has cost so far, but for the question about t = 0."""
         return self._done if self._query is None else self._done + Counts(*self._query.counts())
 
+    @property
+    def pops(self) -> int:
+        """How many steps were taken so far."""
+        return self._done.pops if self._query is None else self._done.pops + self._query.counts()[3]
+
     def answer(self) -> Contact:
         """Return the contact at t = 0 of a body inside the other: no triangles, but a point."""
         assert self._query is not None

@@ -43,6 +43,10 @@ class _Search(Protocol):
     def counts(self) -> Counts:
         """What the search has cost so far."""
 
+    @property
+    def pops(self) -> int:
+        """How many pairs were taken from queues so far."""
+
     def step(self, pops: int, until: float) -> bool:
         """Go on for so many pops, no further than `until`, s; return whether all is answered."""
 
@@ -174,6 +178,14 @@ class Query:
             counts += self._solids.counts
         return counts if self._at_start is None else counts + Counts(*self._at_start.counts())
 
+    @property
+    def _pops(self) -> int:
+        """How many pairs were taken from queues so far, by all searches."""
+        pops = self._search.pops
+        if self._solids is not None:
+            pops += self._solids.pops
+        return pops if self._at_start is None else pops + self._at_start.counts()[3]
+
     def advance(
         self,
         max_iterations: int | None = None,
@@ -202,12 +214,12 @@ class Query:
         budget = Budget(max_iterations, seconds).start()
         try:
             while not self._is_finished and self.time <= until:
-                before = self.counts.pops
+                before = self._pops
                 self._is_finished = self._step(budget.slice(), until)
-                spent = max(self.counts.pops - before, 1)
+                spent = max(self._pops - before, 1)
                 self._spent += spent
                 budget.spend(spent)
-                if budget.is_over:
+                if self._is_finished or budget.is_over:
                     break
         except kernels.TreeError as fault:
             raise damaged(self._pair.trees, fault) from fault

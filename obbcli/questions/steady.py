@@ -59,6 +59,12 @@ class SteadyQuery:
         counts = Counts(*self.at_start.counts())
         return counts if self._moving is None else counts + Counts(*self._moving.counts())
 
+    @property
+    def pops(self) -> int:
+        """How many pairs were taken from queues so far."""
+        at_start = self.at_start.counts()[3]
+        return at_start if self._moving is None else at_start + self._moving.counts()[3]
+
     def step(self, pops: int, until: float = math.inf) -> bool:
         """Take at most so many pairs from the queue, and none of later than `until`, s.
 

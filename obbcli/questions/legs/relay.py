@@ -65,6 +65,11 @@ class Relay(ABC):
         """What the search has cost so far."""
         return self._done + self._query.counts
 
+    @property
+    def pops(self) -> int:
+        """How many pairs were taken from queues so far."""
+        return self._done.pops + self._query.pops
+
     def contact(self) -> Contact:
         """Return what is known now; unresolved where the answer is not complete."""
         return unresolved(self.lower_bound) if self._answer is None else self._answer
