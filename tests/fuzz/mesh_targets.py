@@ -43,6 +43,7 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
     files += [(".glb", data) for data in _documents()]
+    files += _odd_files()
     surface = [("triangle", np.array([[0, 1, 2], [0, 2, 3]]))]
     volumes = [("tetra", TETRA)], [("hexahedron", HEXAHEDRON)]
     with tempfile.TemporaryDirectory() as folder:
@@ -62,6 +63,31 @@ def _documents() -> list[bytes]:
     plain = [morphing([1, 0.5]), skinned(sets=2), instanced(TRANSLATION=[[0, 0, 1], [0, 0, 2]])]
     codecs = [draco_square(), draco_square(normalized=True)]
     return [*(each.glb() for each in [*plain, *codecs]), with_fallback(meshopt_square())]
+
+
+def _odd_files() -> list[tuple[str, bytes]]:
+    """Return text files as exporters write them, and what stands in place of files."""
+    points = b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+    facet = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+    ply = b"ply\nformat ascii 1.0\nelement vertex 4\n"
+    ply += b"".join(b"property float %c\n" % axis for axis in b"xyz")
+    ply += b"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    obj = points.replace(b"0 0 0", b"v 0 0 0").replace(b"\n", b"\nv ", 3)
+    return [
+        (".stl", b"# x\nsolid a\ncolor 1 0 0\n" + facet + b"end facet\nend solid a\n"),
+        (".obj", b"4 4\n$ a cow\n" + obj + b"f 1//1 -1 \\\n2 # x\nlayer 3\nnewmtl a\nKd 1 1 1\n"),
+        (
+            ".off",
+            b"STCN4OFF 4 2 6\n"
+            + points.replace(b"\n", b" 1 0 0 1 1 0 0 1 5 5 ")
+            + b"3 0 1 2\n2 0 1\n",
+        ),
+        (".off", b"nOFF 3 OFF4 4 6\n" + points + b"4 0 1 2 3 1 1 1\n"),
+        (".off", b"OFF4 2 6\n" + points + b"3 0 1 2\n1 3\n"),
+        (".ply", ply + points + b"9 0 1 2 3 -1 0 3 1 -1\n"),
+        (".stl", b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n"),
+        (".obj", "\ufeffv 0 0 0\nf 1 1 1\n".encode("utf-16-le")),
+    ]
 
 
 def _run(suffixes: tuple[str, ...], data: bytes) -> None:

@@ -151,4 +151,7 @@ def test_gltf_takes_strips_and_fans_with_the_winding_of_the_specification():
         primitive = {"attributes": {"POSITION": positions}, "mode": mode}
         builder.document["meshes"] = [{"primitives": [primitive]}]
 
-        assert builder.load().triangles.tolist() == triangles
+        mesh = builder.load()
+        assert mesh.triangles.tolist() == triangles
+        told = ("triangle strips and fans are taken as triangles",)
+        assert mesh.notes == (() if mode == 4 else told)

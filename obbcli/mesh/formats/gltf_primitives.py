@@ -228,7 +228,10 @@ def _indexed(document: Document, item: Json, vertex_count: int, place: str) -> N
             raise NotAsExpectedError(place, "has indices of no unsigned type")
     else:
         indices = np.arange(vertex_count)
-    return _triangles(indices.astype(np.int64), item.get("mode", _TRIANGLES), place)
+    mode = item.get("mode", _TRIANGLES)
+    if mode != _TRIANGLES:
+        document.source.note("triangle strips and fans are taken as triangles")
+    return _triangles(indices.astype(np.int64), mode, place)
 
 
 def _triangles(indices: NDArray[np.int64], mode: int, place: str) -> NDArray[np.int64]:
