@@ -71,7 +71,7 @@ def test_debug_adds_the_traceback(capsys):
 
 def test_internal_error_of_a_command_is_one_line(here, obbtree, monkeypatch):
     monkeypatch.setattr(
-        "obbcli.questions.collide.collide_pair", lambda *_: fail(IndexError("beyond"))
+        "obbcli.questions.collide.collide_pair", lambda *_, **__: fail(IndexError("beyond"))
     )
 
     ended = obbtree("collide", "cube.stl", "apart.obj")
