@@ -1,4 +1,7 @@
-"""Answers of a sweep: as kernels leave them, as a caller's array, and as a document has them."""
+"""Answers of a sweep: as kernels leave them, as a caller's array, and as a document has them.
+
+All three follow the fields of `Contact`: a field that kernels tell is a column by its name.
+"""
 
 from __future__ import annotations
 
@@ -8,91 +11,96 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from obbcli import kernels
+from obbcli.answers.contact import Contact, Vector
+from obbcli.answers.counts import Counts
+from obbcli.answers.fields import fields_of
 from obbcli.answers.status import Status
-from obbcli.answers.words import EVIDENCES, FEATURES
 
 if TYPE_CHECKING:
-    from obbcli.answers.contact import Contact, FirstContact
+    from collections.abc import Sequence
+
+    from obbcli.answers.contact import FirstContact
 
     Answers = np.ndarray[tuple[int], np.dtype[np.void]]
 
-_VECTORS = ("point", "point_a", "point_b", "normal", "normal_a", "normal_b")
-_COUNTS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
+# By their codes in the kernels. After them come rows that are refused, and those of which it is
+# left to Python to say where triangles meet.
+STATUSES = (Status.SEPARATED, Status.CONTACT, Status.OVERLAP_AT_START, Status.UNRESOLVED)
+REFUSED, TRIANGLES_AT_START = 4, 5
+
+_FIELDS = fields_of(Contact)
+_WORDS = {"status": tuple(status.value for status in STATUSES)} | {
+    field.name: ("", *field.words) for field in _FIELDS if field.words
+}
+"""By their codes in the kernels; empty where none applies."""
+_BOUNDS = ("time_lo", "time_hi")
+_FORMATS: dict[object, tuple[str] | tuple[str, int]] = {
+    float: ("f8",),
+    int: ("i8",),
+    bool: ("?",),
+    Vector: ("f8", 3),
+}
 
 
-def _raw_rows() -> np.dtype[np.void]:
+def _raw() -> np.dtype[np.void]:
     columns, size = kernels.sweep_columns()
     names, formats, offsets = zip(*columns, strict=True)
     return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
 
 
-RAW = _raw_rows()
+RAW = _raw()
 """`SweepAnswer` of the kernels: NaN and -1 for what does not apply, codes for words."""
+_TOLD = frozenset(RAW.names or ())
 
-# By their codes there. After them come rows that are refused, and those of which it is left to
-# Python to say where triangles meet.
-STATUSES = (Status.SEPARATED, Status.CONTACT, Status.OVERLAP_AT_START, Status.UNRESOLVED)
-REFUSED, TRIANGLES_AT_START = 4, 5
 
-ROW = np.dtype(
-    [
-        ("status", "U16"),
-        ("time", "f8"),
-        ("time_lo", "f8"),
-        ("time_hi", "f8"),
-        ("evidence", "U16"),
-        *((name, "f8", 3) for name in _VECTORS),
-        ("triangle_a", "i8"),
-        ("triangle_b", "i8"),
-        ("feature", "U13"),
-        ("distance", "f8"),
-        ("error_bound", "f8"),
-        ("approximate", "?"),
-        *((name, "u8") for name in _COUNTS),
-    ]
-)
+def _row() -> np.dtype[np.void]:
+    """Return the columns: those of `Contact` that kernels tell, flags behind the others, counts."""
+    columns: list[Any] = []
+    flags: list[Any] = []
+    for name, kind, _ in _FIELDS:
+        if name == "time_bounds":
+            columns += [(end, "f8") for end in _BOUNDS]
+        elif name in _WORDS and name in _TOLD:
+            columns.append((name, f"U{max(map(len, _WORDS[name]))}"))
+        elif name == "time" or name in _TOLD:
+            (flags if kind is bool else columns).append((name, *_FORMATS[kind]))
+    return np.dtype([*columns, *flags, *((name, "u8") for name in Counts._fields)])
+
+
+ROW = _row()
 """A row of what `sweep` returns."""
-
-# Copied as they are.
-_SHARED = ("time_lo", "time_hi", *_VECTORS, "triangle_a", "triangle_b", "distance", "error_bound")
 
 
 def as_rows(raw: Answers) -> Answers:
     """Return the answers as `sweep` gives them: words spelled out."""
     rows = np.empty(len(raw), ROW)
-    for name in (*_SHARED, *_COUNTS):
-        rows[name] = raw[name]
-    rows["time"] = raw["time_lo"]
-    rows["approximate"] = raw["approximate"]
-    rows["status"] = np.array([status.value for status in STATUSES])[raw["status"]]
-    rows["evidence"] = np.array([word or "" for word in EVIDENCES])[raw["evidence"]]
-    rows["feature"] = np.array([word or "" for word in FEATURES])[raw["feature"]]
+    for name in ROW.names or ():
+        column = raw[_BOUNDS[0] if name == "time" else name]
+        rows[name] = np.array(_WORDS[name])[column] if name in _WORDS else column
     return rows
 
 
 def write_contact(raw: Any, contact: Contact) -> None:
     """Write a contact over a row of `RAW`, all but its counters."""
-    low, high = contact.time_bounds or (None, None)
-    raw["time_lo"] = math.nan if low is None else low
-    raw["time_hi"] = math.nan if high is None else high
-    for name in (*_VECTORS, "distance"):
+    raw[_BOUNDS[0]], raw[_BOUNDS[1]] = (
+        math.nan if time is None else time for time in contact.time_bounds or (None, None)
+    )
+    for name, kind, _ in _FIELDS:
+        if name not in _TOLD:
+            continue
         value = getattr(contact, name)
-        raw[name] = math.nan if value is None else value
-    for name in ("triangle_a", "triangle_b"):
-        value = getattr(contact, name)
-        raw[name] = -1 if value is None else value
-    raw["error_bound"] = contact.error_bound
-    raw["approximate"] = contact.approximate
-    raw["status"] = STATUSES.index(contact.status)
-    raw["evidence"] = EVIDENCES.index(contact.evidence)
-    raw["feature"] = FEATURES.index(contact.feature)
+        if name in _WORDS:
+            value = _WORDS[name].index(value or "")
+        elif value is None:
+            value = -1 if kind is int else math.nan
+        raw[name] = value
 
 
 def write_answer(raw: Any, answer: FirstContact) -> None:
     """Write an answer with what it cost over a row of `RAW`."""
     write_contact(raw, answer)
-    for name in _COUNTS:
-        raw[name] = getattr(answer.stats, name)
+    for name, count in answer.stats.counts._asdict().items():
+        raw[name] = count
 
 
 def as_results(raw: Answers) -> list[dict[str, Any]]:
@@ -100,35 +108,32 @@ def as_results(raw: Answers) -> list[dict[str, Any]]:
 
     Of a refused row there is nothing to say: {}.
     """
-    names = RAW.names or ()
-    columns = [raw[name].tolist() for name in names]
-    return [_result(dict(zip(names, values, strict=True))) for values in zip(*columns, strict=True)]
+    columns = {field.name: _told(raw, field.name) for field in _FIELDS}
+    counts = zip(*(raw[name].tolist() for name in Counts._fields), strict=True)
+    columns["stats"] = [dict(zip(Counts._fields, row, strict=True)) for row in counts]
+    rows = zip(*columns.values(), strict=True)
+    return [
+        {} if code == REFUSED else dict(zip(columns, row, strict=True))
+        for code, row in zip(raw["status"].tolist(), rows, strict=True)
+    ]
 
 
-def _result(values: dict[str, Any]) -> dict[str, Any]:
-    if values["status"] == REFUSED:
-        return {}
-    status = STATUSES[values["status"]]
-    low, high = _or_none(values["time_lo"]), _or_none(values["time_hi"])
-    result: dict[str, Any] = {
-        "status": status.value,
-        "time": low,
-        "time_bounds": None if low is None else [low, high],
-        "evidence": EVIDENCES[values["evidence"]],
-    }
-    for name in _VECTORS:
-        vector = values[name]
-        result[name] = None if math.isnan(vector[0]) else vector
-    for name in ("triangle_a", "triangle_b"):
-        result[name] = None if values[name] < 0 else values[name]
-    result["feature"] = FEATURES[values["feature"]]
-    result["distance"] = _or_none(values["distance"])
-    result["contained"] = None
-    result["approximate"] = values["approximate"]
-    result["error_bound"] = values["error_bound"]
-    result["stats"] = {name: values[name] for name in _COUNTS}
-    return result
-
-
-def _or_none(value: float) -> float | None:
-    return None if math.isnan(value) else value
+def _told(raw: Answers, name: str) -> Sequence[object]:
+    """Return a field of `Contact` of each row, as documents have it: None where it says nothing."""
+    if name == "time_bounds":
+        ends = zip(*(_told(raw, end) for end in _BOUNDS), strict=True)
+        return [None if low is None else [low, high] for low, high in ends]
+    if name == "time":
+        return _told(raw, _BOUNDS[0])
+    if name not in _TOLD:
+        return [None] * len(raw)
+    values = raw[name].tolist()
+    if name in _WORDS:
+        words = dict(enumerate(word or None for word in _WORDS[name]))
+        return [words.get(code) for code in values]
+    kind = raw.dtype[name]
+    if kind.shape:
+        return [None if math.isnan(value[0]) else value for value in values]
+    if kind.kind == "f":
+        return [None if math.isnan(value) else value for value in values]
+    return [None if value < 0 else value for value in values] if kind.kind == "i" else values

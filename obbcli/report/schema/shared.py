@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import get_args
-
-from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
+from obbcli.accuracy import Accuracy
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts, QueryStats
 from obbcli.answers.status import Status
-from obbcli.answers.words import EvidenceWord, FeatureWord
 from obbcli.report.record import SCHEMA_VERSION
+from obbcli.report.schema.typed import schemas_of
 from obbcli.report.schema.words import (
     AMOUNT,
     COUNT,
-    FLAG,
     NUMBER,
     SHA256,
     TEXT,
@@ -39,45 +36,8 @@ STATUS = told(
 TIME_BOUNDS = tuple_of(AMOUNT, or_null(AMOUNT))
 SECONDS = table_of(AMOUNT, "s of wall time by stage")
 
-ACCURACY_FIELDS = documented(
-    Accuracy,
-    {
-        "time_tolerance": or_null(AMOUNT),
-        "distance_tolerance": or_null(AMOUNT),
-        "max_depth_a": or_null(COUNT),
-        "max_depth_b": or_null(COUNT),
-        "leaves": word_of(get_args(Leaves)),
-        "method": word_of(get_args(Method)),
-        "integrator": word_of(get_args(Integrator)),
-        "steps": COUNT,
-        "clearance": AMOUNT,
-        "max_iterations": COUNT,
-        "timeout": or_null(AMOUNT),
-    },
-)
-
-CONTACT_FIELDS = documented(
-    Contact,
-    {
-        "status": STATUS,
-        "time": or_null(AMOUNT),
-        "time_bounds": or_null(TIME_BOUNDS),
-        "evidence": or_null(word_of(get_args(EvidenceWord))),
-        "point": or_null(VECTOR),
-        "point_a": or_null(VECTOR),
-        "point_b": or_null(VECTOR),
-        "normal": or_null(VECTOR),
-        "normal_a": or_null(VECTOR),
-        "normal_b": or_null(VECTOR),
-        "triangle_a": or_null(COUNT),
-        "triangle_b": or_null(COUNT),
-        "feature": or_null(word_of(get_args(FeatureWord))),
-        "distance": or_null(AMOUNT),
-        "contained": or_null(word_of(("a", "b"))),
-        "approximate": FLAG,
-        "error_bound": AMOUNT,
-    },
-)
+ACCURACY_FIELDS = schemas_of(Accuracy)
+CONTACT_FIELDS = schemas_of(Contact, status=STATUS)
 
 # What every kind of search counts.
 COUNTERS = Counts._fields
