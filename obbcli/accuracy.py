@@ -1,20 +1,75 @@
 """`Accuracy`: the one place where a question's speed is traded for its accuracy.
 
-Light on purpose: the command line reads the defaults from here before anything heavy is imported.
+Options of the command line, schemas and checks all follow its fields, each of which says what it is
+by its `Aspect`. Light on purpose: the command line reads it before anything heavy is imported.
 """
 
 from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass, fields
-from typing import Any, Literal, get_args
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal, NamedTuple, get_args
 
 from obbcli.errors import MotionError
 
 Leaves = Literal["triangles", "boxes"]
 Method = Literal["certified", "sampled"]
 Integrator = Literal["exact", "euler", "rk4"]
+
+
+class Aspect(NamedTuple):
+    """What a field of `Accuracy` is, beside its name and default.
+
+    Attributes:
+        kind: float, int or str.
+        help: what its option does, as the command line tells it.
+        metavar: what help calls a number.
+        unset: what None means, as help tells it; empty where it may not be None.
+        least: the number it must not be below.
+        words: those it is one of.
+        concerns: the questions that it makes a difference to: `"all"`, those about a `"motion"`,
+            or those asked by the `"sampled"` method alone.
+        is_shared: whether it says what is asked or for how long, and not how: `tradeoff` varies
+            the other fields.
+    """
+
+    kind: type
+    help: str
+    metavar: str | None = None
+    unset: str = ""
+    least: int = 0
+    words: tuple[str, ...] = ()
+    concerns: Literal["all", "motion", "sampled"] = "all"
+    is_shared: bool = False
+
+    def checked(self, name: str, value: object) -> object:
+        """Return a value as plain Python has it; NumPy scalars are welcome.
+
+        Raises:
+            MotionError: it is of the wrong type or out of range.
+        """
+        if value is None and self.unset:
+            return None
+        if self.kind is float:
+            return _number(name, value)
+        if self.kind is int:
+            return _whole(name, value, self.least)
+        if value not in self.words:
+            raise MotionError(name, f"is {value!r}", "use one of " + ", ".join(self.words))
+        return value
+
+
+def _aspect(kind: type, text: str, **more: Any) -> dict[str, Aspect]:
+    return {"aspect": Aspect(kind, text, **more)}
+
+
+_DEPTH = _aspect(
+    int,
+    "Use trees down to level N only, 0 the root boxes",
+    metavar="N",
+    unset="to the triangles",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,40 +109,93 @@ class Accuracy:
         (4, None, 10000000)
     """
 
-    time_tolerance: float | None = None
-    distance_tolerance: float | None = None
-    max_depth_a: int | None = None
-    max_depth_b: int | None = None
-    leaves: Leaves = "triangles"
-    method: Method = "certified"
-    integrator: Integrator = "exact"
-    steps: int = 100
-    clearance: float = 0.0
-    max_iterations: int = 10_000_000
-    timeout: float | None = None
+    time_tolerance: float | None = field(
+        default=None,
+        metadata=_aspect(
+            float,
+            "Bracket a first contact this closely, in s",
+            metavar="S",
+            unset="1e-9 of the duration",
+            concerns="motion",
+        ),
+    )
+    distance_tolerance: float | None = field(
+        default=None,
+        metadata=_aspect(
+            float,
+            "Stop at points this close, in mesh units",
+            metavar="D",
+            unset="go on until proven",
+        ),
+    )
+    max_depth_a: int | None = field(default=None, metadata=_DEPTH)
+    max_depth_b: int | None = field(default=None, metadata=_DEPTH)
+    leaves: Leaves = field(
+        default="triangles",
+        metadata=_aspect(
+            str, "What a leaf of several triangles stands for", words=get_args(Leaves)
+        ),
+    )
+    method: Method = field(
+        default="certified",
+        metadata=_aspect(
+            str, "Prove the answer, or sample it", words=get_args(Method), concerns="motion"
+        ),
+    )
+    integrator: Integrator = field(
+        default="exact",
+        metadata=_aspect(
+            str, "How sampling turns a frame", words=get_args(Integrator), concerns="sampled"
+        ),
+    )
+    steps: int = field(
+        default=100,
+        metadata=_aspect(
+            int, "Sample in N equal steps of time", metavar="N", least=1, concerns="sampled"
+        ),
+    )
+    clearance: float = field(
+        default=0.0,
+        metadata=_aspect(
+            float,
+            "Surfaces this close count as contact, in mesh units",
+            metavar="D",
+            concerns="motion",
+            is_shared=True,
+        ),
+    )
+    max_iterations: int = field(
+        default=10_000_000,
+        metadata=_aspect(
+            int,
+            "Give up, unresolved, after N pops of the queue",
+            metavar="N",
+            least=1,
+            is_shared=True,
+        ),
+    )
+    timeout: float | None = field(
+        default=None,
+        metadata=_aspect(
+            float,
+            "Give up, unresolved, after S seconds of work",
+            metavar="S",
+            unset="never",
+            is_shared=True,
+        ),
+    )
 
     def __post_init__(self) -> None:
-        self._convert("time_tolerance", _number, optional=True)
-        self._convert("distance_tolerance", _number, optional=True)
-        self._convert("clearance", _number)
-        self._convert("timeout", _number, optional=True)
-        self._convert("max_depth_a", _whole, optional=True)
-        self._convert("max_depth_b", _whole, optional=True)
-        self._convert("steps", _positive)
-        self._convert("max_iterations", _positive)
-        _one_of("leaves", self.leaves, get_args(Leaves))
-        _one_of("method", self.method, get_args(Method))
-        _one_of("integrator", self.integrator, get_args(Integrator))
-
-    def _convert(self, name: str, convert: Any, *, optional: bool = False) -> None:
-        """Replace a field by its plain Python value (NumPy scalars are welcome, NaN is not)."""
-        value = getattr(self, name)
-        if not (optional and value is None):
-            object.__setattr__(self, name, convert(name, value))
+        for name, aspect in ASPECTS.items():
+            object.__setattr__(self, name, aspect.checked(name, getattr(self, name)))
 
     def as_dict(self) -> dict[str, float | int | str | None]:
         """Return every field by name, in the order of the class."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: getattr(self, name) for name in ASPECTS}
+
+
+ASPECTS: dict[str, Aspect] = {one.name: one.metadata["aspect"] for one in fields(Accuracy)}
+"""Of every field, in the order of the class."""
 
 
 def _number(name: str, value: object) -> float:
@@ -101,7 +209,7 @@ def _number(name: str, value: object) -> float:
     return number
 
 
-def _whole(name: str, value: object, least: int = 0) -> int:
+def _whole(name: str, value: object, least: int) -> int:
     """Return an int of at least `least`."""
     try:
         number = operator.index(value)  # type: ignore[arg-type]  # whatever is no integer raises here
@@ -110,14 +218,3 @@ def _whole(name: str, value: object, least: int = 0) -> int:
     if isinstance(value, bool) or number < least:
         raise MotionError(name, f"is {value!r}, expected a whole number of at least {least}")
     return number
-
-
-def _positive(name: str, value: object) -> int:
-    """Return an int of at least 1."""
-    return _whole(name, value, least=1)
-
-
-def _one_of(name: str, value: object, choices: tuple[str, ...]) -> None:
-    """Refuse a word that is none of the choices."""
-    if value not in choices:
-        raise MotionError(name, f"is {value!r}", "use one of " + ", ".join(choices))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import shlex
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from obbcli.accuracy import Accuracy
+from obbcli.accuracy import ASPECTS, Accuracy
 from obbcli.report.record import document, finite
 
 if TYPE_CHECKING:
@@ -199,11 +199,13 @@ def _index(found: Tradeoff, row: Trial | None) -> int | None:
 
 def is_plain(build: Mapping[str, Any], accuracy: Accuracy) -> bool:
     """Return whether a setting is the default one, as far as it may be chosen."""
-    shared = {"clearance", "max_iterations", "timeout"}
-    differs = {
-        field.name for field in fields(accuracy) if getattr(accuracy, field.name) != field.default
-    }
-    return not build_words(build) and differs <= shared
+    default = Accuracy()
+    is_default = all(
+        getattr(accuracy, name) == getattr(default, name)
+        for name, aspect in ASPECTS.items()
+        if not aspect.is_shared
+    )
+    return is_default and not build_words(build)
 
 
 def build_words(build: Mapping[str, Any]) -> list[str]:

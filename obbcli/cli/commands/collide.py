@@ -108,8 +108,8 @@ def _refuse_contradictions(
         remedy = "leave the motion out, or add --duration 0"
         raise UsageError("--all-pairs", "is asked of bodies at rest, at t = 0", remedy)
     for name, value in (
-        ("--timeout", accuracy.timeout),
-        ("--max-iterations", accuracy.max_iterations),
+        ("--timeout", accuracy.given().get("timeout")),
+        ("--max-iterations", accuracy.given().get("max_iterations")),
     ):
         if value is not None:
             fault = "would cut the list of --all-pairs at any place"

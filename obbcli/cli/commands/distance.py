@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from obbcli.accuracy import ASPECTS
 from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.options.option import Command
 from obbcli.cli.options.two_bodies import about_two, naming_options, with_load_time
@@ -17,11 +18,6 @@ if TYPE_CHECKING:
     from obbcli.cli.options.placement import MotionOptions, QuestionOptions
     from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.report.record import Record
-
-# The other fields of `Accuracy` say nothing about bodies at rest.
-_APPLYING = frozenset(
-    ("distance_tolerance", "max_depth_a", "max_depth_b", "leaves", "max_iterations", "timeout")
-)
 
 
 @click.command(
@@ -64,7 +60,7 @@ def _refuse_what_says_nothing(motion: MotionOptions, accuracy: AccuracyOptions) 
             remedy = "leave it out, or see obbtree first-contact"
             raise UsageError(_option(name), "moves bodies; the distance is that at t = 0", remedy)
     for name in accuracy.given():
-        if name not in _APPLYING:
+        if ASPECTS[name].concerns != "all":
             raise UsageError(_option(name), "says nothing about a distance", "leave it out")
 
 
@@ -86,10 +82,10 @@ def _ask(asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, I
 
 def _hide_what_says_nothing() -> None:
     """Keep options that are only known to be refused by name out of the help."""
-    known = {_option(name) for name in (*_APPLYING, "max_depth")}
     for param in command.params:
         group = getattr(param, "group", "")
-        if group == "Motion" or (group == "Accuracy" and not known & set(param.opts)):
+        aspect = ASPECTS.get(str(param.name))
+        if group == "Motion" or (aspect is not None and aspect.concerns != "all"):
             assert isinstance(param, click.Option)
             param.hidden = True
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import click
 
-from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
+from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.inputs import STDIN, keep_inputs, read_stdin
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import Command, common_options, option, verify_option
@@ -19,7 +18,6 @@ from obbcli.cli.progress import proving
 from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
-    from obbcli.accuracy import Accuracy
     from obbcli.cli.options.option import CommonOptions
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
@@ -137,21 +135,10 @@ def _read(
         parts.bodies,
         parts.ignore,
         parts.duration if duration is None else duration,
-        _accuracy(parts.accuracy, options),
+        options.accuracy(parts.accuracy),
         verify=verify,
     )
     return scene, Source(file, digest_of(data)(), None), stamps
-
-
-def _accuracy(accuracy: Accuracy, options: AccuracyOptions) -> Accuracy:
-    """Return what a file asks for, with what options say instead."""
-    given = options.given()
-    with usage_errors():
-        asked = replace(accuracy, **given)
-    for name in ("integrator", "steps"):
-        if name in given and asked.method != "sampled":
-            raise UsageError(f"--{name}", "has a meaning with --method sampled alone")
-    return asked
 
 
 def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:

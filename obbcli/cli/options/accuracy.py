@@ -2,137 +2,98 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli.accuracy import Accuracy, Integrator, Leaves, Method
+from obbcli.accuracy import ASPECTS, Accuracy
 from obbcli.cli.boundary import UsageError, usage_errors
 from obbcli.cli.options.option import gathered, option
 from obbcli.cli.options.words import Finite, Whole
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from obbcli.accuracy import Aspect
     from obbcli.cli.options.option import Decorator
 
+_SIDES = ("_a", "_b")
 
-class AccuracyOptions(NamedTuple):
-    """Every field of `Accuracy`, None where it was not given, and `--max-depth` for both trees."""
 
-    time_tolerance: float | None
-    distance_tolerance: float | None
-    max_depth: int | None
-    max_depth_a: int | None
-    max_depth_b: int | None
-    leaves: Leaves | None
-    method: Method | None
-    integrator: Integrator | None
-    steps: int | None
-    clearance: float | None
-    max_iterations: int | None
-    timeout: float | None
+def _both(name: str) -> str:
+    """Return the option that stands for fields of A and of B: `max_depth` for `max_depth_a`."""
+    return name.removesuffix("_a").removesuffix("_b")
+
+
+class AccuracyOptions:
+    """What was given of the fields of `Accuracy`, and of the options that stand for A's and B's."""
+
+    _fields = tuple(dict.fromkeys(name for own in ASPECTS for name in (_both(own), own)))
+
+    def __init__(self, **values: Any) -> None:
+        self._values = values
+
+    def _asdict(self) -> dict[str, Any]:
+        """Return every option by name, as a named tuple does; None where it was not given."""
+        return self._values
 
     def given(self) -> dict[str, Any]:
         """Return the fields of `Accuracy` that were given, by name."""
-        values = self._asdict()
-        both = values.pop("max_depth")
-        for name in ("max_depth_a", "max_depth_b"):
-            if values[name] is None:
-                values[name] = both
+        values = {}
+        for name in ASPECTS:
+            value = self._values[name]
+            values[name] = self._values[_both(name)] if value is None else value
         return {name: value for name, value in values.items() if value is not None}
 
-    def accuracy(self) -> Accuracy:
+    def accuracy(self, base: Accuracy | None = None) -> Accuracy:
         """Return the accuracy asked for.
+
+        Args:
+            base: what stands for options that were not given; None: the defaults.
 
         Raises:
             UsageError: an option that has no meaning with the method.
         """
         given = self.given()
-        for name in ("integrator", "steps"):
-            if name in given and self.method != "sampled":
-                raise UsageError(f"--{name}", "has a meaning with --method sampled alone")
         with usage_errors():
-            return Accuracy(**given)
+            asked = Accuracy(**given) if base is None else replace(base, **given)
+        for name in given:
+            if ASPECTS[name].concerns == "sampled" and asked.method != "sampled":
+                raise UsageError(f"--{name}", "has a meaning with --method sampled alone")
+        return asked
 
 
-def _accuracy(name: str, **attributes: Any) -> Decorator:
-    return option("Accuracy", name, **attributes)
+def _options() -> Iterator[Decorator]:
+    """Yield the options; where there is a field for A and one for B, one for both comes first."""
+    for name, aspect in ASPECTS.items():
+        text = f"{aspect.help} [default: {aspect.unset or _told(getattr(Accuracy, name))}]."
+        if name.endswith(_SIDES):
+            both = _flag(_both(name))
+            if name.endswith(_SIDES[0]):
+                yield _option(both, aspect, text)
+            text = f"The same for {name[-1].upper()} alone [default: as {both}]."
+        yield _option(_flag(name), aspect, text)
 
 
-_COUNT = Whole(1)
-_DEPTH = Whole(0)
-accuracy_options = gathered(
-    "accuracy",
-    AccuracyOptions,
-    (
-        _accuracy(
-            "--time-tolerance",
-            type=Finite(0),
-            metavar="S",
-            help="Bracket a first contact this closely, in s [default: 1e-9 of the duration].",
-        ),
-        _accuracy(
-            "--distance-tolerance",
-            type=Finite(0),
-            metavar="D",
-            help="Stop at points this close, in mesh units [default: go on until proven].",
-        ),
-        _accuracy(
-            "--max-depth",
-            type=_DEPTH,
-            metavar="N",
-            help="Use trees down to level N only, 0 the root boxes [default: to the triangles].",
-        ),
-        _accuracy(
-            "--max-depth-a",
-            type=_DEPTH,
-            metavar="N",
-            help="The same for A alone [default: as --max-depth].",
-        ),
-        _accuracy(
-            "--max-depth-b",
-            type=_DEPTH,
-            metavar="N",
-            help="The same for B alone [default: as --max-depth].",
-        ),
-        _accuracy(
-            "--leaves",
-            type=click.Choice(get_args(Leaves)),
-            help=f"What a leaf of several triangles stands for [default: {Accuracy.leaves}].",
-        ),
-        _accuracy(
-            "--method",
-            type=click.Choice(get_args(Method)),
-            help=f"Prove the answer, or sample it [default: {Accuracy.method}].",
-        ),
-        _accuracy(
-            "--integrator",
-            type=click.Choice(get_args(Integrator)),
-            help=f"How sampling turns a frame [default: {Accuracy.integrator}].",
-        ),
-        _accuracy(
-            "--steps",
-            type=_COUNT,
-            metavar="N",
-            help=f"Sample in N equal steps of time [default: {Accuracy.steps}].",
-        ),
-        _accuracy(
-            "--clearance",
-            type=Finite(0),
-            metavar="D",
-            help="Surfaces this close count as contact, in mesh units [default: 0].",
-        ),
-        _accuracy(
-            "--max-iterations",
-            type=_COUNT,
-            metavar="N",
-            help="Give up, unresolved, after N pops of the queue "
-            f"[default: {Accuracy.max_iterations:,}].",
-        ),
-        _accuracy(
-            "--timeout",
-            type=Finite(0),
-            metavar="S",
-            help="Give up, unresolved, after S seconds of work [default: never].",
-        ),
-    ),
-)
+def _option(flag: str, aspect: Aspect, text: str) -> Decorator:
+    kind: click.ParamType[Any] = click.Choice(aspect.words)
+    if aspect.kind is float:
+        kind = Finite(aspect.least)
+    elif aspect.kind is int:
+        kind = Whole(aspect.least)
+    return option("Accuracy", flag, type=kind, metavar=aspect.metavar, help=text)
+
+
+def _flag(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def _told(default: float | str) -> str:
+    """Return a default as help tells it."""
+    if isinstance(default, str):
+        return default
+    return f"{default:,}" if isinstance(default, int) else f"{default:g}"
+
+
+accuracy_options = gathered("accuracy", AccuracyOptions, tuple(_options()))

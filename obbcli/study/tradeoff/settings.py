@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple, get_args
 
-from obbcli.accuracy import Accuracy, Integrator
+from obbcli.accuracy import ASPECTS, Accuracy, Integrator
 from obbcli.tree.header import Fit, Split
 
 if TYPE_CHECKING:
@@ -75,9 +75,8 @@ def reference_of(asked: Accuracy, duration: float) -> Accuracy:
 
 def shared_part(asked: Accuracy) -> Accuracy:
     """Return what all settings share of the accuracy asked for: clearance and limits."""
-    return Accuracy(
-        clearance=asked.clearance, max_iterations=asked.max_iterations, timeout=asked.timeout
-    )
+    shared = {name: getattr(asked, name) for name, aspect in ASPECTS.items() if aspect.is_shared}
+    return Accuracy(**shared)
 
 
 def plan(asked: Accuracy, scale: Scale, *, varies_trees: bool) -> Iterator[Setting]:
