@@ -35,10 +35,10 @@ lost,0 0,,
 LARGE_CELLS = 360  # 259,200 triangles: enough for seven threads to share the first boxes
 # The command line as installed, but for the number of cores that it believes in.
 COMMAND = """import sys
-from obbcli import cores
+from obbcli import threads
 from obbcli.cli import run_process
 count = int(sys.argv.pop(1))
-cores.usable_cores = lambda: count
+threads.usable_cores = lambda: count
 sys.exit(run_process())
 """
 # What the C library, BLAS and NumPy take a processor for: one without wide registers and fused

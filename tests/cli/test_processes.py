@@ -39,17 +39,17 @@ sys.exit(main(sys.argv[1:]))
 INTERRUPTED_QUERY = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from obbcli import contact
+from obbcli import Query
 from obbcli.cli import main
 
-advance = contact.Query.advance
+advance = Query.advance
 
 def interrupted(self, *arguments):
     if self.lower_bound > 0:
         signal.raise_signal(signal.SIGINT)
     return advance(self, *arguments)
 
-contact.Query.advance = interrupted
+Query.advance = interrupted
 sys.exit(main(sys.argv[1:]))
 """
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
