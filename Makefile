@@ -119,6 +119,7 @@ stub: .venv/installed
 
 bench: .venv/bench-tools .venv/test-tools
 	$(BIN)/python tests/bench/run.py $(BENCH_ARGS)
+	$(BIN)/python tests/bench/speed_tables.py
 
 # Twenty minutes or so; the tests run the quick part of it.
 faults: .venv/test-extras-tools

@@ -3,7 +3,8 @@
 Every answer is asserted; what is printed is the median of rounds in turns, and the quartiles.
 First contact and fits ask `--queries` random questions a class, also of the meshes cow.obj,
 spot.obj, fandisk.obj and rocker-arm.obj where `--meshes` or OBBTREE_BENCH_MESHES names their
-folder.
+folder. The figures go into this machine's file in `tests/bench/results/`, from which
+`speed_tables.py` writes the manual's tables; those of `--quick` are not kept.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ import bench_sweep
 import bench_wall
 import moving_tables
 from harness import Row, machine, record, table
+from results_file import write
 
 ROOT = Path(__file__).resolve().parents[2]
 MESHES = "OBBTREE_BENCH_MESHES"
@@ -66,6 +68,7 @@ def main() -> None:
         help=f"folder of real meshes for first contact (default: ${MESHES}; else none)",
     )
     options = parser.parse_args()
+    load = os.getloadavg()[0]
     about = machine(ROOT)
     for key, value in about.items():
         print(f"{key}: {value}")
@@ -76,8 +79,22 @@ def main() -> None:
             text = TABLES.get(bench, table)([row for row in measured if row.bench == bench])
             print(f"\n{bench}\n\n{text}")
         rows += measured
+        if not options.quick:  # as soon as it is known: the next bench may be interrupted
+            print(
+                f"\nkept in {write({name: measured}, about, command_of(options, name), load).name}"
+            )
     if options.json:
         options.json.write_text(json.dumps(record(rows, about), indent=1) + "\n")
+
+
+def command_of(options: argparse.Namespace, name: str) -> str:
+    """Return what to type for one bench again, without paths of this machine."""
+    words = ["python tests/bench/run.py", "--only", name]
+    if options.queries is not None:
+        words += ["--queries", str(options.queries)]
+    if options.meshes is not None and name in ("first-contact", "fits"):
+        words += ["--meshes", "FOLDER"]
+    return " ".join(words)
 
 
 if __name__ == "__main__":
