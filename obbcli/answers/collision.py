@@ -56,7 +56,7 @@ class Collision:
         stats: QueryStats,
         contained: Inner | None = None,
     ) -> None:
-        # The dataclass's own way, about its being frozen, takes longer than many a question.
+        # The fields are set past the frozen dataclass, whose own way takes longer than a question.
         fields = vars(self)
         fields["status"] = status
         fields["witness"] = witness
@@ -102,7 +102,7 @@ class Collision:
         Raises:
             UnresolvedError: a limit was reached before the answer was known.
         """
-        # Not by is_contact() alone: the call takes as long as a test of two boxes.
+        # The common statuses are compared in place: a call takes as long as a test of two boxes.
         status = self.status
         if status is _UNRESOLVED:
             return is_contact(status)

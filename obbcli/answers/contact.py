@@ -92,7 +92,7 @@ class FirstContact(Contact):
     @classmethod
     def of(cls, contact: Contact, stats: QueryStats) -> FirstContact:
         """Return a contact with the counters of its question."""
-        # The dataclass's own way, about its being frozen, takes longer than many a question.
+        # The fields are set past the frozen dataclass, whose own way takes longer than a question.
         made = object.__new__(cls)
         vars(made).update(vars(contact), stats=stats)
         return made

@@ -58,8 +58,8 @@ class Body:
     motion: Motion
 
     def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
-        # Told by what it has: trees belong to a layer above this one. By its type, since a tree's
-        # bounds cost as much as a whole mesh, and may find it damaged.
+        # Trees belong to a layer above this one, so a shape is told by its attributes; by those of
+        # its type, since to ask a tree for its bounds may read a whole file.
         if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
             refuse("shape", shape, "pass an ObbTree, a Mesh or a path")
         if not isinstance(pose, Pose):
@@ -67,7 +67,7 @@ class Body:
         if not isinstance(motion, Motion):
             refuse("motion", motion, "pass a Motion")
         pose = motion.first_pose(pose)
-        # The dataclass is frozen to everybody else, and its own way takes three times as long.
+        # The fields are set past the frozen dataclass, whose own way takes three times as long.
         fields = vars(self)
         fields["shape"] = shape
         fields["pose"] = pose

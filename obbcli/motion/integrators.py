@@ -55,7 +55,7 @@ def rk4_step(
     Raises:
         MotionError: the step turns by so much that nothing is left of the frame.
     """
-    # As the equation is linear and W constant, its four stages come to a polynomial in S.
+    # The equation is linear and W constant, so the four stages add up to a polynomial in S.
     with np.errstate(all="ignore"):
         turn = _cross(time * spin)
         result = frame
@@ -77,7 +77,7 @@ def _orthonormalized(
     first, second, _ = frame.T.tolist()
     x = _normalized(first)
     rest = _across(_normalized(second), x)
-    # Written so that it refuses what is not a number.
+    # NaN fails this comparison, and is refused.
     if not max(map(abs, rest)) > _LOST:
         angle = math.hypot(*spin.tolist()) * time
         raise MotionError(
@@ -85,7 +85,7 @@ def _orthonormalized(
             f"too few: one turns by {angle:.3g} rad, of which the integrator makes no frame",
             "take more, or the exact integrator",
         )
-    # Once more: what was left has been rounded by as much as the columns were long.
+    # A second pass removes what the first has left by rounding relative to the columns' length.
     y = _normalized(_across(_normalized(rest), x))
     z = x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
     orthonormal: NDArray[np.float64] = np.array((x, y, z)).T

@@ -169,7 +169,7 @@ class Motion:
             duration: s.
             pose: of the body at t = 0.
         """
-        # Imported where it is needed: bodies at rest answer without it.
+        # Bodies at rest answer without this import.
         from obbcli.motion.pieces import Piece
 
         yield Piece(0.0, duration, pose, self)

@@ -137,7 +137,7 @@ class PathMotion(Motion):
         if index < 1 or self.times[index] != time:
             return None
         here, there = self.poses[index - 1 : index + 1]
-        # Between poses that are the same number by number no velocity was made up.
+        # A piece between equal poses is rest, which ends exactly at the pose after it.
         if is_same_pose(here, there):
             return None
         end = self.piece(index - 1).pose_at(time - float(self.times[index - 1]), here)

@@ -52,7 +52,7 @@ class Pose:
     def __init__(
         self, rotation: ArrayLike | None = None, translation: ArrayLike | None = None
     ) -> None:
-        # The dataclass is frozen to everybody else, and its own way takes three times as long.
+        # The fields are set past the frozen dataclass, whose own way takes three times as long.
         fields = vars(self)
         fields["rotation"] = _as_rotation(rotation)
         fields["translation"] = vector_or_zero(translation, "translation")
@@ -120,12 +120,12 @@ def _as_rotation(rotation: ArrayLike | None) -> NDArray[np.float64]:
         matrix.setflags(write=False)
         return matrix
     matrix = as_floats(rotation, (3, 3), "rotation", MotionError)
-    # In Python's own numbers: for nine of them NumPy takes five times as long.
+    # Python's own floats: for nine numbers NumPy takes five times as long.
     x, y, z = matrix.tolist()
     dots = _dot(x, x) - 1.0, _dot(y, y) - 1.0, _dot(z, z) - 1.0, _dot(x, y), _dot(y, z), _dot(z, x)
-    # Written so that what is no number, as huge entries overflow, does not pass.
+    # Huge entries overflow to NaN, which fails this comparison and is refused.
     if not all(abs(defect) <= ORTHONORMAL_TOLERANCE for defect in dots):
-        # Cut to a tame size first: the products of huge entries would overflow with a warning.
+        # Entries are clipped first: the products of huge ones would overflow with a warning.
         tame = matrix.clip(-2.0, 2.0)
         defect = float(np.abs(tame @ tame.T - np.eye(3)).max())
         raise MotionError(

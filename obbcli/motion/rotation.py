@@ -67,7 +67,7 @@ def turn_after(spin: NDArray[np.float64], time: float) -> Turn:
         return _NO_TURN
     unit = denominator << shift
     try:
-        high = angle / unit  # of integers: rounded once
+        high = angle / unit  # both are integers, so the quotient is rounded once
     except OverflowError as fault:
         raise MotionError("time", "turns by more than a double can hold", "shorten it") from fault
     whole, part = high.as_integer_ratio()
@@ -80,7 +80,7 @@ def turn_after(spin: NDArray[np.float64], time: float) -> Turn:
 
 def axis_of(spin: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the unit axis W / |W| of a spin other than 0, (3,)."""
-    # By a power of two first, or the slowest spins lose their direction.
+    # Scaling by a power of two first keeps the direction of subnormal spins.
     unit = np.ldexp(spin, -math.frexp(float(np.abs(spin).max()))[1])
     axis: NDArray[np.float64] = unit / math.hypot(*unit.tolist())
     return axis
@@ -134,7 +134,7 @@ def _trigonometry(angle: float, degrees: bool) -> tuple[float, float, float]:
     """Return cos, sin and 1 - cos of an angle, the last without cancellation near 0."""
     if not degrees:
         return math.cos(angle), math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
-    # The remainder is exact, so that right angles stay right.
+    # The remainder is exact, so multiples of a right angle stay exact.
     angle = math.remainder(angle, 360.0)
     quarter = round(angle / 90.0)
     rest = math.radians(angle - 90.0 * quarter)
@@ -159,7 +159,7 @@ def rotation_vector(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     m = matrix
     trace = float(np.trace(m))
-    # Of 4 q q^T, whose diagonal is known; any row of it is the quaternion but for its length.
+    # The rows of 4 q q^T are multiples of the quaternion q; its diagonal is known.
     skew = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
     diagonal = np.diagonal(m)
     largest = int(np.argmax(diagonal))

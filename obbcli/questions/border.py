@@ -139,7 +139,7 @@ def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
 
 def _screw_over(body: Body, tree: ObbTree) -> kernels.Screw:
     motion = body.motion
-    # A body that does not turn has no use for a pivot, nor for the pass over its mesh to find one.
+    # A body that does not turn needs no pivot; to find one costs a pass over its mesh.
     pivot = pivot_of(body, tree).tolist() if motion.is_turning else _ORIGIN
     return kernels.Screw(*motion.velocities, pivot)
 

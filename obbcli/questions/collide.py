@@ -55,7 +55,7 @@ def collide(
         (False, 'separated')
     """
     if duration is None and accuracy is None and not solid:
-        # What most ask, in the fewest steps: there are bodies that take less than a microsecond.
+        # Bodies at rest on trees answer within a microsecond, so this path makes no other object.
         here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
         if here is not None and there is not None:
             try:
@@ -73,7 +73,7 @@ def collide_pair(pair: PairQuestion, *, solid: bool) -> Collision:
     """
     accuracy = pair.accuracy
     if solid or pair.duration > 0 or accuracy.clearance > 0:
-        # Imported where it is needed: bodies at rest answer without it.
+        # Bodies at rest answer without this import.
         from obbcli.questions.first_contact import Query
 
         query = Query.about(pair, solid=solid, any_contact=True)

@@ -188,7 +188,7 @@ def _alone(pair: PairQuestion, ids: tuple[int, int], low: float, search: Search)
     if found.status is Status.SEPARATED:
         return None
     assert found.time_bounds is not None
-    # Both lower ends are proven; with the later one the order in time is kept.
+    # Both lower ends are proven. The later one keeps the contacts in order of time.
     lo = max(low, found.time_bounds[0])
     parts = {field.name: getattr(found, field.name) for field in fields(Contact)}
     own = {"triangle_a": ids[0], "triangle_b": ids[1], "time": lo}

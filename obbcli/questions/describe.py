@@ -29,7 +29,7 @@ def contact_of(query: kernels.ContactQuery, found: kernels.Contact, clearance: f
     """Return what a moving question found; not for triangles that meet at t = 0."""
     place = query.place(found)
     by_boxes = found.evidence is kernels.Evidence.BOXES
-    # Whether surfaces themselves touch at t = 0 was decided exactly before.
+    # The exact test at t = 0 has found that the surfaces themselves do not touch then.
     is_at_start = found.high == 0 and (by_boxes or clearance > 0)
     return Contact(
         status=Status.OVERLAP_AT_START if is_at_start else Status.CONTACT,
@@ -56,7 +56,7 @@ def contact_at_start(
 ) -> Contact:
     """Return the contact of two triangles that meet at t = 0."""
     (a, b), (tree_a, tree_b) = bodies, trees
-    # The exact question about the two triangles knows where they meet, and which features.
+    # The exact test of the two triangles tells where they meet, and with which features.
     touch = primitives.first_contact(
         primitives.Triangle(a.pose.apply(tree_a.triangle(triangle_a))),
         primitives.Triangle(b.pose.apply(tree_b.triangle(triangle_b))),
@@ -89,7 +89,7 @@ def boxes_at_start(query: kernels.ContactQuery, error_bound: float, clearance: f
         error_bound: how far apart the surfaces can be, mesh units.
         clearance: of the question, mesh units.
     """
-    # As far always, or what is told would depend on how fast the machine is.
+    # The number of pops is fixed, so that the place told does not depend on the machine's speed.
     while (left := POPS_A_SLICE - query.counts()[3]) > 0 and not query.advance(left):
         pass
     found = query.contact()

@@ -128,7 +128,7 @@ class Query:
         self._pair = pair
         self._search = _search_of(pair, any_contact=any_contact)
         self._solids: Containment | None = None
-        # The question about t = 0 that the search does not ask itself.
+        # The question about t = 0 that solids ask where the search asks none.
         self._at_start: kernels.StaticQuery | None = None
         if solid:
             self._solids = self._containment()

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 # What a pair takes at the peak: two rows, and what lists that grow set aside.
 _BYTES_A_PAIR = 32
-_FEW = 4  # a block as much smaller than it may be is followed by one of twice the rows
+_FEW = 4  # after a block of less than 1 / _FEW of its room, the next takes twice the rows
 
 
 def triangle_pairs(

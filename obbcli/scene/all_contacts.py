@@ -74,7 +74,7 @@ class AllContacts(ContactStream):
 
     def _next_first(self) -> float:
         """Return what no contact of bodies that are not listed yet comes before, s."""
-        # Each pair of triangles has a bracket of its own.
+        # The brackets of later pairs of triangles may begin before that of the first contact.
         known = self._firsts.time
         return known if self._firsts.is_finished else earliest(known, self._tolerance)
 
@@ -119,7 +119,7 @@ class AllContacts(ContactStream):
     def _advance_list(self, listing: _Listing) -> SceneContact | None:
         """Return the next contact of two bodies, or look for it."""
         if listing.next is not None:
-            # Before the one after it is looked for: an interrupt would lose it.
+            # The contact is handed out before the next is looked for: an interrupt loses none.
             self._left = None if self._left is None else self._left - 1
             if listing.rest is None:
                 heapq.heappop(self._listings)
@@ -153,7 +153,7 @@ class AllContacts(ContactStream):
             self._end(listing, limit.time or 0.0)
             return
         except BaseException:
-            # What was interrupted cannot go on, and would seem to be at its end.
+            # An interrupted generator ends: without this entry its list would seem complete.
             self._end(listing, listing.time)
             raise
         finally:

@@ -51,7 +51,7 @@ class FirstContacts(ContactStream):
         self._agenda = PairQueue(asked.candidates)
         self._is_first = first
         self._is_eager = is_eager and not first
-        self._best = math.inf  # when a contact is known, s
+        self._best = math.inf  # the time of the earliest contact known, s
         self._is_stopped = False
         self._is_over = False
         self._budget = Budget(seconds=asked.accuracy.timeout)
@@ -133,7 +133,7 @@ class FirstContacts(ContactStream):
         """Advance a question; return its answer once it is known or a limit is reached."""
         if self._is_eager:
             return self._answer(query, _POPS, math.inf)
-        # Where one contact is asked for, never beyond what is known already.
+        # Where only the first contact is asked for, no question goes beyond one that is known.
         best = self._best if self._is_first else math.inf
         found = self._answer(query, _LEAST_POPS, best)
         until = min(best, self._agenda.second_time())
@@ -161,7 +161,7 @@ class FirstContacts(ContactStream):
         contact = Contact(**{name: getattr(found, name) for name in _CONTACT_FIELDS})
         if found.status is not Status.UNRESOLVED:
             self._best = min(self._best, found.time)
-        # Of what is unresolved nothing is proven before its time, but it is known only now.
+        # An unresolved pair is told no earlier than the time that the queue has come to.
         when = max(found.time, item.time) if found.status is Status.UNRESOLVED else found.time
         result = SceneContact(*self.asked.names(item.a, item.b), contact)
         self._agenda.put(item._replace(time=when, work=result))

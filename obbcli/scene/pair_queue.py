@@ -35,8 +35,8 @@ class PairQueue:
 
     def __init__(self, candidates: Candidates) -> None:
         self._candidates = candidates
-        self._taken = 0  # of the candidates
-        self._new: Item | None = None  # the last one taken
+        self._taken = 0  # how many candidates have left the list
+        self._new: Item | None = None  # the candidate that left the list last
         self._begun: list[Item] = []
         self._take()
 

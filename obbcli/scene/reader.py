@@ -116,7 +116,7 @@ def _parse_toml(text: str, place: str) -> dict[str, Any]:
             raise SceneError(place, f"is no TOML: {fault}") from fault
         line = found[2] or text.count("\n") + 1
         raise SceneError(f"{place}:{line}", f"is no TOML: {found[1]}") from fault
-    except ValueError as fault:  # whole numbers of more digits than Python reads
+    except ValueError as fault:  # Python reads no whole number of so many digits
         raise SceneError(place, f"is no TOML: {fault}") from fault
     return tree
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 MARGIN = 2.0**-40
-_NOWHERE = np.zeros(3)  # where bodies that do not turn have their pivots
-_LEAST = 2.0**-1060  # what operations on the smallest doubles may be off by, and more
+_NOWHERE = np.zeros(3)  # the pivot of bodies that do not turn
+_LEAST = 2.0**-1060  # covers the rounding of sums of subnormal numbers
 # By how much poses, orthonormal to 1e-9, may lengthen a vector.
 _STRETCH = 1 + 2.0**-28
 # A box whose faces touch points of diameter D has all of it within sqrt(3) D of them.
@@ -56,7 +56,7 @@ class _BodyPiece(NamedTuple):
     body: int
     bounds: Array
     piece: Piece
-    # World coordinates; None: the pose of the centroid, which is of the mesh.
+    # In world coordinates; None: the centroid of the mesh, posed.
     pivot: Array | None
     centroid: Array
 
@@ -78,7 +78,7 @@ def swept_boxes(
     balls: list[tuple[int, Array]] = []
     limits = (accuracy.max_depth_a, accuracy.max_depth_b)
     is_coarse = accuracy.leaves == "boxes" or limits != (None, None)
-    with np.errstate(all="ignore"):  # what is not finite is known to be nowhere in particular
+    with np.errstate(all="ignore"):  # a box that is not finite meets every other
         for number, (body, shape) in enumerate(zip(bodies, shapes, strict=True)):
             bounds = _grown(shape.bounds) if is_coarse else shape.bounds
             motion = body.motion.steady or body.motion
@@ -171,7 +171,7 @@ def _turned(placed: _Placed, low: Array, high: Array) -> tuple[Array, Array]:
     along = (arms * axis[:, None]).sum(axis=2)
     radius = _lengths(np.cross(axis[:, None], arms)).max(axis=1)[:, None]
     squares = axis * axis
-    # Not 1 - w^2, which loses all digits where the axis is one of coordinates.
+    # 1 - w^2 would lose all digits where the axis is a coordinate axis.
     across = np.sqrt(np.roll(squares, 1, axis=1) + np.roll(squares, 2, axis=1))
     ends = np.array([along.min(axis=1)[:, None] * axis, along.max(axis=1)[:, None] * axis])
     solid_low = placed.pivot + ends.min(axis=0) - radius * across

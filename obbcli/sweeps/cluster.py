@@ -103,7 +103,7 @@ def connected(address: str | None, workers: int | None) -> Iterator[Any]:
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                # Of these only the address alone would still take a well-known port.
+                # The address alone would still open the well-known port of the dashboard.
                 dashboard_address="127.0.0.1:0",
                 scheduler_kwargs={"dashboard": False},
                 silence_logs=logging.CRITICAL,

@@ -44,7 +44,7 @@ def number_in(text: str, where: str) -> float:
         MotionError: it is none.
     """
     try:
-        # Python's own grouping of digits is a slip of the finger elsewhere.
+        # Python takes 1_000 for a number; in a file an underscore is a typing error.
         value = nan if "_" in text else float(text)
     except ValueError:
         value = nan

@@ -127,7 +127,7 @@ def answer_questions(
         try:
             return answer_batch(trees, _batch(trees, questions, poses[:1]), accuracy, threads)
         except MotionError:
-            pass  # their one placement is refused: asked row by row, each has its error
+            pass  # the shared placement is refused: row by row, each row gets its own error
     return answer_batch(trees, _batch(trees, questions, poses), accuracy, threads)
 
 
@@ -139,7 +139,7 @@ def _batch(
     def numbers(asked: RowQuestion, side: int) -> tuple[float, ...]:
         velocity, spin, pivot = asked.motions[side]
         if not any(spin):
-            pivot = _NOTHING  # as of a question of its own: nothing turns about it
+            pivot = _NOTHING  # nothing turns about it
         elif pivot is None:
             pose = asked.poses[side]
             key = side, id(pose)

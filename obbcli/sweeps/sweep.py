@@ -197,7 +197,7 @@ def _with_pivots(motions: ArrayLike, name: str) -> Floats:
     try:
         shape = np.shape(motions)
     except ValueError:
-        shape = ()  # ragged: the check below says so
+        shape = ()  # a ragged list: the check below refuses it
     rows = np.asarray(motions)[None] if len(shape) == 1 else motions  # one for all of them
     numbers = as_floats(rows, (None, None), name, MotionError)
     if numbers.shape[1] not in (6, 9):

@@ -156,7 +156,7 @@ def _possible_nodes(triangles: int, split: str, leaf_size: int, max_depth: int |
         most = triangles - 1 if triangles > leaf_size else min(1, triangles - 1)
         return most if max_depth is None else min(most, 2 ** (min(max_depth, 32) + 1) - 1)
     count = depth = 0
-    ranges = {triangles: 1}  # at this depth, by how many triangles they have
+    ranges = {triangles: 1}  # how many ranges of this depth hold so many triangles
     while ranges:
         count += sum(number for size, number in ranges.items() if size > 1)
         halves: dict[int, int] = {}

@@ -100,7 +100,7 @@ def read_header(file: BinaryIO, name: str) -> Header:
     size = os.fstat(file.fileno()).st_size
     head = file.read(FIXED.size)
     if len(head) == FIXED.size:
-        # No more than there is, whatever it says of itself.
+        # The header may claim any length; no more than the file holds is read.
         head += file.read(max(0, min(FIXED.unpack(head)[2], size) - FIXED.size))
     return checked_header(memoryview(head), size, name)
 
@@ -236,7 +236,7 @@ def _is_surface(bounds: list[object], centroid: list[object]) -> bool:
     for point in points:
         if not isinstance(point, list) or list(map(type, point)) != [float] * 3:
             return False
-    # Neither infinite numbers nor such as are none pass the comparisons.
+    # Infinities and NaN fail these comparisons.
     return all(-inf < low <= x <= high < inf for low, x, high in zip(*points, strict=True))
 
 
@@ -258,7 +258,7 @@ def pack_header(
         checksums: of each block of data.
         data_bytes: length of all data.
     """
-    # Not at hand before: questions about meshes start without it.
+    # Questions about meshes start without this import.
     import json
 
     fields = asdict(description) | surface._asdict()

@@ -171,7 +171,7 @@ def load_tree(path: str | os.PathLike[str], *, verify: bool = True) -> ObbTree:
     """
     if begins_as_tree(Path(path)):
         return ObbTree.open(path, verify=verify)
-    # Nobody sees a tree that is made for one question: its mesh needs no name.
+    # No answer shows the tree of a single question, so its mesh is not hashed.
     return ObbTree.build(load_mesh(path, hashed=False))
 
 

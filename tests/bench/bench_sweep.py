@@ -16,7 +16,7 @@ from scene_surfaces import blob
 import obbcli
 from obbcli.sweeps import cluster, stream
 from obbcli.sweeps.query_file import opened
-from obbcli.sweeps.row_questions import Setting
+from obbcli.sweeps.row_questions import SweepSetting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -86,7 +86,7 @@ def _ways(
 ) -> dict[str, Callable[[], Any]]:
     """Return what answers the motions, by who: as an array, as objects, or as lines."""
     body = obbcli.Body(trees[1], obbcli.Pose(None, SHIFT))
-    setting = Setting({"translate_b": SHIFT}, degrees=False, accuracy=obbcli.Accuracy())
+    setting = SweepSetting({"translate_b": SHIFT}, degrees=False, accuracy=obbcli.Accuracy())
 
     def swept(threads: int) -> Any:
         return obbcli.sweep(trees[0], body, *motions, threads=threads)

@@ -19,7 +19,7 @@ from obbcli.cli import main
 from obbcli.sweeps import cluster
 from obbcli.sweeps.result_lines import answer_rows
 from obbcli.sweeps.row_fields import Row
-from obbcli.sweeps.row_questions import Setting
+from obbcli.sweeps.row_questions import SweepSetting
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -178,7 +178,7 @@ def test_missing_package_is_told_by_name(here, obbtree, monkeypatch):
     )
 
 
-SETTING = Setting({}, degrees=False, accuracy=Accuracy())
+SETTING = SweepSetting({}, degrees=False, accuracy=Accuracy())
 ROWS = [Row(0, "q.csv:2", "one", {"vel": (1.0, 0.0, 0.0)})]
 
 

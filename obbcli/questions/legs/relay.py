@@ -91,7 +91,7 @@ class Relay(ABC):
 
         Whenever it has come that far, `self.time` must be later than `time`.
         """
-        # What the difference is off by, and the sum that makes a time of the whole again.
+        # The second summand covers the rounding of the difference and of `_clock`'s sum.
         return time - self._leg.start + _ROUNDING * time
 
     def _go_on(self, leg: Leg, query: SteadyQuery) -> None:

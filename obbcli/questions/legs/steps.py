@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from obbcli.tree.tree import ObbTree
 
     Array = NDArray[np.float64]
-    # The body of a step from one time to another, and by how much that is off its path.
+    # Makes the body of the step between two times, and bounds how far it is off its path.
     Step = Callable[[float, float], tuple[Body, float]]
 
 _INTEGRATORS = {"euler": euler_step, "rk4": rk4_step}
@@ -72,9 +72,9 @@ def steps_of(pair: PairQuestion) -> Iterator[Leg]:
     count = accuracy.steps
     for k in range(count):
         start, end = duration * (k / count), duration * ((k + 1) / count)
-        if start == end:  # a duration of so few doubles that there is no room for all steps
+        if start == end:  # the duration holds fewer doubles than steps
             continue
-        with np.errstate(over="ignore", invalid="ignore"):  # refused where it makes a difference
+        with np.errstate(over="ignore", invalid="ignore"):  # `_beyond_doubles` refuses it
             (a, error_a), (b, error_b) = step_a(start, end), step_b(start, end)
         error = error_a + error_b
         if not math.isfinite(error):
@@ -261,6 +261,6 @@ def _corners(tree: ObbTree) -> Array:
 def _radius(points: Array, spin: Array) -> float:
     """Return the largest distance of points from the axis through the origin."""
     across = np.cross(axis_of(spin), points)
-    # Scaled, or squares of the very large overflow.
+    # Scaling keeps the squares of very large numbers from overflowing.
     scale = float(np.abs(across).max())
     return scale * float(np.linalg.norm(across / scale, axis=1).max()) if scale > 0 else 0.0

@@ -64,10 +64,11 @@ class PathQuery(Relay):
     """
 
     _near: Contact | None = None
-    _is_at_end = False  # only the instant after the leg of the near contact is left
+    _is_at_end = False  # whether the present question is the instant after the near leg
 
     def __init__(self, pair: PairQuestion, *, any_contact: bool = False) -> None:
-        # A bracket may consist of two: of the time the bodies are near, and of contact.
+        # The bracket of an answer joins two: when the bodies come near, and when they touch. Each
+        # may take half of the width asked for.
         half = replace(pair.accuracy, time_tolerance=0.5 * pair.time_tolerance)
         halved = pair._replace(accuracy=half)
         super().__init__(halved, legs_of(halved), any_contact=any_contact)
@@ -81,7 +82,7 @@ class PathQuery(Relay):
         return self._pair.duration if known.time is None else known.time
 
     def _until(self, time: float) -> float:
-        # What is near is known to be at a time before.
+        # A near contact lies before `time` already, so the question about it runs to its end.
         return super()._until(time) if self._near is None else math.inf
 
     def _conclude(self, found: Contact) -> Contact | None:
@@ -102,7 +103,7 @@ class PathQuery(Relay):
                 return SEPARATED
             self._go_on(leg, self._ask_about(leg))
             return None
-        # Contact at the very end of a leg may show only in the pose after it.
+        # The pose after a leg may touch although the leg's own end, rounded, does not.
         if leg is None or self._is_at_end or not self._is_soon(leg.start):
             return self._near
         self._is_at_end = True
@@ -128,7 +129,7 @@ class PathQuery(Relay):
             assert self._near.time is not None
             low = self._near.time
         end = None if high is None else max(low, self._clock(high, up=True))
-        # What is but near at t = 0 was decided exactly to be apart then.
+        # The exact test at t = 0 has found the surfaces apart, so nearness alone is no overlap.
         is_near = found.evidence == "within_tolerance" and self._pair.accuracy.clearance == 0
         is_at_start = low == 0 and not end and found.status is Status.OVERLAP_AT_START
         return replace(
