@@ -154,7 +154,7 @@ def _refuse_other(source: Source, suffix: str) -> None:
     """Refuse what is no mesh, and say what it is."""
     from obbcli.mesh.formats.not_meshes import not_a_mesh
 
-    other = not_a_mesh(source.data, suffix)
+    other = not_a_mesh(source.data, suffix if suffix in _FORMATS else "")
     if other is not None:
         raise source.error(*other)
 

@@ -26,10 +26,10 @@ LFS = (
 INSIDES = re.compile(r"Error|Exception|Traceback|Errno|codec|\bchar \d|<class|invalid literal")
 
 
-def zipped():
+def zipped(name="part.obj"):
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        archive.writestr("part.obj", OBJ)
+        archive.writestr(name, OBJ)
     return stream.getvalue()
 
 
@@ -73,6 +73,9 @@ OTHERS = {
     "step": (b"ISO-10303-21;\nHEADER;\n", "is a STEP file, which holds exact shapes, not a mesh"),
     "hdf5": (b"\x89HDF\r\n\x1a\n", "is an HDF5 file, which is not read"),
     "fbx": (b"Kaydara FBX Binary  \0\x1a\0", "is an FBX scene, not a mesh; export it as glTF"),
+    "3mf": (zipped("3D/3dmodel.model"), "is a 3MF file, not a mesh; export the shape"),
+    "collada": (b"<?xml version='1.0'?>\n<!-- x -->\n<COLLADA ", "is a COLLADA scene, not a mesh"),
+    "mtl": (b"# x\n\nnewmtl red\nKd 1 0 0\n", "is a library of materials, which belongs to an OBJ"),
     "zeros": (bytes(5000), "holds nothing but zeros, not a mesh; copy or download it again"),
     "blank": (b" \n\t\r\n" * 2000, "holds nothing but white space"),
     "empty": (b"", "is empty, expected a mesh; write the file again"),
@@ -107,6 +110,22 @@ def test_every_signature_is_needed(number, monkeypatch):
     rest = [row for k, row in enumerate(not_meshes._SIGNATURES) if k != number]
     monkeypatch.setattr(not_meshes, "_SIGNATURES", rest)
     assert not_meshes.not_a_mesh(data) is None
+
+
+@pytest.mark.parametrize(("what", "suffixes"), not_meshes._OWN.items())
+def test_formats_with_readers_of_their_own_are_left_to_them(what, suffixes):
+    samples = {
+        "a zip archive": zipped(),
+        "a 3MF file": zipped("3D/3dmodel.model"),
+        "a COLLADA scene": b"<COLLADA ",
+        "an X3D scene": b"<X3D ",
+        "a USD scene": b"#usda 1.0",
+    }
+    data = samples.get(what, b"ISO-10303-21;")
+
+    assert not_meshes.not_a_mesh(data).fault.startswith(f"is {what}")
+    for suffix in suffixes:
+        assert not_meshes.not_a_mesh(data, suffix) is None
 
 
 def test_a_file_without_a_known_suffix_is_refused_by_its_beginning_alone(tmp_path, monkeypatch):

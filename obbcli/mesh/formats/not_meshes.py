@@ -14,6 +14,7 @@ from obbcli.mesh.formats.text import strip_mark
 _HEAD_BYTES = 4096
 _UNPACK = "unpack it and name the mesh inside"
 _EXPORT = "export the shape as a mesh, such as STL"
+_MESH = "name the mesh itself"
 _FETCH = "the download brought something else: fetch the file itself"
 
 #: Where certain bytes stand, what the file then is, and what to do.
@@ -68,6 +69,9 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
         "a web page (HTML)",
         _FETCH,
     ),
+    (rb"(<\?xml[^>]*>\s*)?(<!--.{0,2000}?-->\s*)?<COLLADA\b", "a COLLADA scene", _EXPORT),
+    (rb"(<\?xml[^>]*>\s*)?(<!doctype\s+x3d[^>]*>\s*)?<X3D\b", "an X3D scene", _EXPORT),
+    (rb"(#[^\n]*\n\s*)*newmtl\s", "a library of materials, which belongs to an OBJ file", _MESH),
     (rb"(<\?xml[^>]*>\s*)?<Error>", "an error that a web server gave (XML)", _FETCH),
     (rb"(<\?xml[^>]*>\s*)?(<!--.{0,2000}?-->\s*)?(<!doctype\s+svg|<svg)\b", "a drawing", _EXPORT),
     (
@@ -76,8 +80,15 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
         _FETCH,
     ),
 )
-#: Formats that are zip archives themselves.
-_ZIPPED = (".3mf",)
+#: Suffixes of formats whose files begin so; where one of them has a reader, the file is its own.
+_OWN = {
+    "a zip archive": (".3mf",),
+    "a 3MF file": (".3mf",),
+    "a STEP file, which holds exact shapes": (".step", ".stp", ".p21"),
+    "a COLLADA scene": (".dae",),
+    "a USD scene": (".usd", ".usda", ".usdc"),
+    "an X3D scene": (".x3d",),
+}
 
 
 class NotAMesh(NamedTuple):
@@ -92,18 +103,28 @@ def not_a_mesh(data: bytes, suffix: str = "") -> NotAMesh | None:
 
     Args:
         data: the file, or its beginning.
-        suffix: of its name; some formats are zip archives by themselves.
+        suffix: of its name, where a reader is known for it, else empty.
     """
+    found = _told(data)
+    if found is not None and suffix not in _OWN.get(found[0], ()):
+        what, remedy = found
+        return NotAMesh(f"is {what}" if ", not " in what else f"is {what}, not a mesh", remedy)
+    if not data[:_HEAD_BYTES].strip(b"\0") and not data.strip(b"\0"):
+        return NotAMesh("holds nothing but zeros, not a mesh", "copy or download it again")
+    if not data[:_HEAD_BYTES].strip() and not data.strip():
+        return NotAMesh("holds nothing but white space, not a mesh", "write the file again")
+    return None
+
+
+def _told(data: bytes) -> tuple[str, str] | None:
+    """Return what the beginning of a file tells, and what to do about it."""
     for at, signature, what, remedy in _SIGNATURES:
         if data.startswith(signature, at):
-            known = signature.startswith(b"PK") and suffix in _ZIPPED
-            return None if known else NotAMesh(f"is {what}, not a mesh", remedy)
+            if what == "a zip archive" and b"3D/3dmodel.model" in data:
+                return "a 3MF file", _EXPORT
+            return what, remedy
     head = strip_mark(data[:_HEAD_BYTES]).lstrip()
     for pattern, what, remedy in _TEXTS:
         if re.match(pattern, head, re.IGNORECASE | re.DOTALL):
-            return NotAMesh(f"is {what}" if ", not " in what else f"is {what}, not a mesh", remedy)
-    if not data[:_HEAD_BYTES].strip(b"\0") and not data.strip(b"\0"):
-        return NotAMesh("holds nothing but zeros, not a mesh", "copy or download it again")
-    if not head and not data.strip():
-        return NotAMesh("holds nothing but white space, not a mesh", "write the file again")
+            return what, remedy
     return None
