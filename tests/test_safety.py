@@ -13,11 +13,17 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pytest
 from cell_files import VOLUME_KINDS, write
+from gltf_documents import draco_square, meshopt_square, with_fallback
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gltf_files import Builder
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT / "sample_meshes"
@@ -214,6 +220,21 @@ def test_libraries_read_a_mesh_and_do_nothing_else(tmp_path: Path) -> None:
     found = watched(tmp_path, *(("info", name) for name in names))
 
     assert dict(zip(names, found, strict=True)) == dict.fromkeys(names, INNOCENT)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        pytest.param(draco_square, marks=pytest.mark.needs("DracoPy")),
+        pytest.param(meshopt_square, marks=pytest.mark.needs("meshopt")),
+    ],
+)
+def test_codecs_unpack_a_mesh_and_do_nothing_else(
+    made: Callable[[], Builder], tmp_path: Path
+) -> None:
+    (tmp_path / "packed.glb").write_bytes(with_fallback(made()))
+
+    assert watched(tmp_path, ("info", "packed.glb")) == [INNOCENT]
 
 
 def test_the_watch_sees_what_it_is_for(tmp_path: Path) -> None:

@@ -181,8 +181,11 @@ def test_gltf_refuses_a_skin_for_a_mesh_without_joints():
         builder.load()
 
 
+@pytest.mark.needs("vtk")
 def test_gltf_poses_as_vtk_does(tmp_path):
-    vtk_reader = pytest.importorskip("vtkmodules.vtkIOGeometry").vtkGLTFReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOGeometry import vtkGLTFReader
+
     random = np.random.default_rng(5)
     for k in range(4):
         shares = random.uniform(0.05, 1, (4, 2))
@@ -195,12 +198,10 @@ def test_gltf_poses_as_vtk_does(tmp_path):
         }
         path = tmp_path / f"{k}.glb"
         path.write_bytes(builder.glb())
-        reader = vtk_reader()
+        reader = vtkGLTFReader()
         reader.SetFileName(str(path))
         reader.ApplyDeformationsToGeometryOn()
         reader.Update()
-
-        from vtkmodules.util.numpy_support import vtk_to_numpy
 
         leaf = reader.GetOutput()
         while not leaf.IsA("vtkPolyData"):
