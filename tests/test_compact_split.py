@@ -10,7 +10,7 @@ import pytest
 from tree_meshes import NASTY, bumpy_grid, grid, needles, soup
 
 from obbcli import Mesh, ObbTree, load_mesh
-from obbcli.tree.header import Split
+from obbcli.tree.options import Split
 
 SAMPLES = Path(__file__).parents[1] / "sample_meshes"
 

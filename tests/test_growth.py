@@ -16,6 +16,7 @@ from tree_meshes import NASTY, bumpy_grid, needles, soup, staircase
 import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
 from obbcli.tree import growing as growth
+from obbcli.tree.options import BuildOptions
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -161,7 +162,7 @@ def test_list_like_tree_grows_without_running_out_of_stack() -> None:
 
 def test_interrupted_completion_keeps_what_was_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(growth, "_TRIANGLES_A_SLICE", 1000)
-    tree = growth.Growth(Mesh(*soup(3000)), "triangles", "compact", 1, None, None)
+    tree = growth.Growth(Mesh(*soup(3000)), BuildOptions())
 
     def interrupt(share: float) -> None:
         raise KeyboardInterrupt
@@ -253,7 +254,7 @@ def test_any_number_of_threads_makes_the_same_tree() -> None:
         mesh = Mesh(*surface)
 
         made = [
-            content(growth.Growth(mesh, "triangles", split, 1, None, None, **options).arrays())
+            content(growth.Growth(mesh, BuildOptions(split=split), **options).arrays())
             for options in (
                 {"on_demand": False, "threads": 1},
                 {"on_demand": False, "threads": 2},

@@ -129,6 +129,7 @@ NEEDED = {
     "obbcli.tree.file",
     "obbcli.tree.growing",
     "obbcli.tree.header",
+    "obbcli.tree.options",
     "obbcli.tree.tree",
     "obbcli.version",
 }

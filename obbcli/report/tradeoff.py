@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from obbcli.accuracy import ASPECTS, Accuracy
 from obbcli.report.record import document, finite
+from obbcli.tree.options import DEFAULT_BUILD
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 # Of the duration: the errors whose prices are told.
 SHARES = (1e-3, 1e-6, 1e-9)
-_DEFAULT_BUILD = {"fit": "triangles", "split": "compact", "leaf_size": 1, "max_depth": None}
+_DEFAULT_BUILD = DEFAULT_BUILD._asdict()
 
 
 class Wording(NamedTuple):

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from obbcli.tree.header import Surface
     from obbcli.tree.opened import OpenedTree
+    from obbcli.tree.options import Fit, Split
 
 
 class Level(NamedTuple):
@@ -205,12 +206,12 @@ class TreeFacts:
         )
 
     @property
-    def fit(self) -> str:
+    def fit(self) -> Fit:
         """How boxes were oriented."""
         return self._made.description.fit
 
     @property
-    def split(self) -> str:
+    def split(self) -> Split:
         """How nodes were parted."""
         return self._made.description.split
 

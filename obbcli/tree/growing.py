@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,29 +12,16 @@ from obbcli import kernels
 from obbcli.errors import MeshError
 from obbcli.threads import thread_count
 from obbcli.tree.file import TreeArrays
-from obbcli.tree.header import Description, Fit, Split
+from obbcli.tree.header import Description
+from obbcli.tree.options import kernel_limits
 from obbcli.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from obbcli.mesh import Mesh
+    from obbcli.tree.options import BuildOptions
 
-_FITS = {
-    "triangles": kernels.Fit.TRIANGLES,
-    "points": kernels.Fit.POINTS,
-    "hull": kernels.Fit.HULL,
-    "min-volume": kernels.Fit.MIN_VOLUME,
-    "axis-aligned": kernels.Fit.AXIS_ALIGNED,
-}
-_SPLITS = {
-    "median": kernels.Split.MEDIAN,
-    "center": kernels.Split.CENTER,
-    "compact": kernels.Split.COMPACT,
-}
-_NO_LIMIT = 2**32 - 1
-
-_HULL_FITS = ("hull", "min-volume")
 # What a thread does of a build between two looks at signals and progress: tens of milliseconds.
 _TRIANGLES_A_SLICE = 200_000
 _HULL_TRIANGLES_A_SLICE = 10_000
@@ -49,7 +36,7 @@ class Growth:
 
     Args:
         mesh: what the tree is over.
-        fit, split, leaf_size, max_depth: as `ObbTree.build`.
+        options: how it is built.
         max_memory: bytes that the build may need at its peak. None: no limit.
         on_demand: whether questions may be asked before the tree is whole.
         threads: how many work on large nodes, or on a tree that is made at once. None: as many as
@@ -63,24 +50,19 @@ class Growth:
     def __init__(
         self,
         mesh: Mesh,
-        fit: Fit,
-        split: Split,
-        leaf_size: int,
-        max_depth: int | None,
-        max_memory: int | None,
+        options: BuildOptions,
+        max_memory: int | None = None,
         *,
         on_demand: bool = True,
         threads: int | None = None,
     ) -> None:
-        _check_options(fit, split, leaf_size, max_depth)
-        _check_memory(mesh, fit, max_memory)
+        options = options.checked()
+        _check_memory(mesh, options, max_memory)
         self.mesh = mesh
         self._threads = thread_count(threads)
+        self._needs_hulls = options.needs_hulls
         self.description = Description(
-            fit=fit,
-            split=split,
-            leaf_size=int(leaf_size),
-            max_depth=None if max_depth is None else int(max_depth),
+            **options._asdict(),
             source=None if mesh.source is None else Path(mesh.source).name,
             source_sha256=mesh.sha256,
             tool_version=__version__,
@@ -89,19 +71,16 @@ class Growth:
         self._builder = kernels.TreeBuilder(
             mesh.vertices,
             mesh.triangles.view(np.uint32),
-            _FITS[fit],
-            _SPLITS[split],
-            min(leaf_size, _NO_LIMIT),
-            _NO_LIMIT if max_depth is None else min(max_depth, _NO_LIMIT),
+            kernels.Fit[_kernel_name(options.fit)],
+            kernels.Split[_kernel_name(options.split)],
+            *kernel_limits(options.leaf_size, options.max_depth),
             on_demand,
             self._threads,
         )
         self.kernel = self._builder.tree()
         self._lock = Lock()
         self._arrays: TreeArrays | None = None
-        self.kernel.possible_node_count = _possible_nodes(
-            len(mesh.triangles), split, leaf_size, max_depth
-        )
+        self.kernel.possible_node_count = _possible_nodes(len(mesh.triangles), options)
 
     def arrays(self, progress: Callable[[float], object] | None = None) -> TreeArrays:
         """Make what is missing, and return the whole tree as arrays.
@@ -112,8 +91,7 @@ class Growth:
         with self._lock:
             if self._arrays is not None:
                 return self._arrays
-            by_hull = self.description.fit in _HULL_FITS
-            work = _HULL_TRIANGLES_A_SLICE if by_hull else _TRIANGLES_A_SLICE
+            work = _HULL_TRIANGLES_A_SLICE if self._needs_hulls else _TRIANGLES_A_SLICE
             while not self._builder.advance(work * self._threads):
                 if progress is not None:
                     progress(self._builder.progress())
@@ -150,8 +128,14 @@ class Growth:
         return self._builder.byte_count + self.mesh.vertices.nbytes
 
 
-def _possible_nodes(triangles: int, split: str, leaf_size: int, max_depth: int | None) -> int:
+def _kernel_name(word: str) -> str:
+    """Return what the kernels call a fit or a split."""
+    return word.upper().replace("-", "_")
+
+
+def _possible_nodes(triangles: int, options: BuildOptions) -> int:
     """Return how many boxes a tree can have."""
+    _, split, leaf_size, max_depth = options
     if split != "median":
         most = triangles - 1 if triangles > leaf_size else min(1, triangles - 1)
         return most if max_depth is None else min(most, 2 ** (min(max_depth, 32) + 1) - 1)
@@ -170,21 +154,8 @@ def _possible_nodes(triangles: int, split: str, leaf_size: int, max_depth: int |
     return count
 
 
-def _check_options(fit: str, split: str, leaf_size: int, max_depth: int | None) -> None:
-    if not isinstance(fit, str) or fit not in _FITS:
-        raise MeshError("fit", f"is {fit!r}", "use one of " + ", ".join(get_args(Fit)))
-    if not isinstance(split, str) or split not in _SPLITS:
-        raise MeshError("split", f"is {split!r}", "use one of " + ", ".join(get_args(Split)))
-    if isinstance(leaf_size, bool) or not isinstance(leaf_size, (int, np.integer)) or leaf_size < 1:
-        raise MeshError("leaf_size", f"is {leaf_size!r}", "use a whole number of at least 1")
-    if max_depth is not None and (
-        isinstance(max_depth, bool) or not isinstance(max_depth, (int, np.integer)) or max_depth < 0
-    ):
-        raise MeshError("max_depth", f"is {max_depth!r}", "use a whole number of at least 0")
-
-
-def _check_memory(mesh: Mesh, fit: str, max_memory: int | None) -> None:
-    each = _BUILD_BYTES_A_TRIANGLE + (_HULL_BYTES_A_TRIANGLE if fit in _HULL_FITS else 0)
+def _check_memory(mesh: Mesh, options: BuildOptions, max_memory: int | None) -> None:
+    each = _BUILD_BYTES_A_TRIANGLE + (_HULL_BYTES_A_TRIANGLE if options.needs_hulls else 0)
     needed = each * len(mesh.triangles) + mesh.vertices.nbytes
     if max_memory is not None and needed > max_memory:
         raise MeshError(

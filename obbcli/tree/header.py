@@ -13,25 +13,24 @@ import struct
 import zlib
 from dataclasses import asdict, dataclass
 from math import inf
-from typing import TYPE_CHECKING, BinaryIO, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
 from obbcli.errors import TreeFileError
+from obbcli.tree.options import FITS, SPLITS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.mesh import Mesh
+    from obbcli.tree.options import Fit, Split
 
 # As in PNG: the first byte is no text, and line ends show a transfer in text mode.
 MAGIC = b"\x89OBBT\r\n\x1a"
 VERSION = 1
 BLOCK_BYTES = 4096
 ALIGNMENT = 64
-
-Fit = Literal["triangles", "points", "hull", "min-volume", "axis-aligned"]
-Split = Literal["median", "center", "compact"]
 
 # magic, version, header bytes, header CRC, block bytes, file bytes, boxes, triangles, vertices,
 # scale exponent, description bytes
@@ -57,8 +56,8 @@ class Description:
         notes: what of the mesh file was taken with a change, a sentence each.
     """
 
-    fit: str
-    split: str
+    fit: Fit
+    split: Split
     leaf_size: int
     max_depth: int | None
     source: str | None
@@ -214,8 +213,8 @@ def _description(text: bytes, name: str) -> tuple[Description, Surface]:
     notes = fields["notes"] = tuple(fields["notes"])
     description = Description(**fields)
     allowed = {
-        "fit": description.fit in get_args(Fit),
-        "split": description.split in get_args(Split),
+        "fit": description.fit in FITS,
+        "split": description.split in SPLITS,
         "leaf_size": description.leaf_size >= 1,
         "max_depth": description.max_depth is None or description.max_depth >= 0,
         # Sentences that a terminal can show.

@@ -11,14 +11,13 @@ from obbcli.tree import file as treefile
 from obbcli.tree import header as treeheader
 from obbcli.tree.facts import TreeFacts
 from obbcli.tree.growing import Growth
+from obbcli.tree.options import DEFAULT_BUILD, BuildOptions, kernel_limits
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
-    from obbcli.tree.header import Fit, Split
-
-_NO_LIMIT = 2**32 - 1
+    from obbcli.tree.options import Fit, Split
 
 
 class ObbTree(TreeFacts):
@@ -32,10 +31,10 @@ class ObbTree(TreeFacts):
     def build(
         cls,
         mesh_or_path: Mesh | str | os.PathLike[str],
-        fit: Fit = "triangles",
-        split: Split = "compact",
-        leaf_size: int = 1,
-        max_depth: int | None = None,
+        fit: Fit = DEFAULT_BUILD.fit,
+        split: Split = DEFAULT_BUILD.split,
+        leaf_size: int = DEFAULT_BUILD.leaf_size,
+        max_depth: int | None = DEFAULT_BUILD.max_depth,
         lazy: bool = True,
         *,
         max_memory: int | None = None,
@@ -75,7 +74,8 @@ class ObbTree(TreeFacts):
             (3896, 1)
         """
         mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
-        growth = Growth(mesh, fit, split, leaf_size, max_depth, max_memory, on_demand=lazy)
+        options = BuildOptions(fit, split, leaf_size, max_depth)
+        growth = Growth(mesh, options, max_memory, on_demand=lazy)
         return cls(growth if lazy else growth.arrays(progress))
 
     @classmethod
@@ -146,10 +146,8 @@ class ObbTree(TreeFacts):
             from obbcli.tree.opened import OpenedTree
 
             OpenedTree(self._path).arrays()
-        depth = self.max_depth
-        fault = self._kernel_of(self._arrays).check(
-            min(self.leaf_size, _NO_LIMIT), _NO_LIMIT if depth is None else min(depth, _NO_LIMIT)
-        )
+        limits = kernel_limits(self.leaf_size, self.max_depth)
+        fault = self._kernel_of(self._arrays).check(*limits)
         if fault is None and self._surface not in (None, treeheader.Surface.of(self.mesh)):
             fault = "the surface has other bounds or another centroid than the header says"
         if fault is not None:

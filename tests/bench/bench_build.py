@@ -37,10 +37,11 @@ def whole(surface: Surface, split: Any, threads: int) -> object:
     """Return a whole tree that so many threads made; the mesh's own checks are part of it."""
     from obbcli import Mesh
     from obbcli.tree.growing import Growth
+    from obbcli.tree.options import BuildOptions
 
     mesh = Mesh(surface.vertices, surface.faces)
-    options = ("triangles", split, 1, None, None)
-    return Growth(mesh, *options, on_demand=False, threads=threads).arrays()
+    options = BuildOptions(split=split)
+    return Growth(mesh, options, on_demand=False, threads=threads).arrays()
 
 
 def bytes_a_triangle(one: Contestant, surface: Surface) -> dict[str, object]:

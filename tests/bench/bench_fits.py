@@ -18,7 +18,7 @@ from moving_sets import DURATION, MOTIONS, OUTCOMES, mesh_pairs, normalized, que
 from scenes import pairs
 
 import obbcli
-from obbcli.tree.header import Fit, Split
+from obbcli.tree.options import Fit, Split
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -5,14 +5,11 @@ from __future__ import annotations
 import io
 import json
 import sys
-from typing import get_args
 
 import pytest
 from cube_files import as_input, cube, stl
 
 from obbcli import ObbTree
-from obbcli.cli.commands import build as build_module
-from obbcli.tree import header as treeheader
 
 
 def test_build_puts_the_tree_beside_its_mesh(here, obbtree):
@@ -66,11 +63,6 @@ def test_build_passes_its_options_on(here, obbtree):
         3,
         4,
     )
-
-
-def test_build_offers_all_fits_and_splits():
-    assert get_args(treeheader.Fit) == build_module.FITS
-    assert get_args(treeheader.Split) == build_module.SPLITS
 
 
 def test_build_into_a_directory(here, obbtree):

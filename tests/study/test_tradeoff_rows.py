@@ -15,8 +15,9 @@ import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status
 from obbcli.study.tradeoff import measuring
 from obbcli.study.tradeoff.measuring import Study
-from obbcli.study.tradeoff.settings import Build, Scale
+from obbcli.study.tradeoff.settings import Scale
 from obbcli.study.tradeoff.taking_turns import fair_part
+from obbcli.tree.options import BuildOptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -262,4 +263,4 @@ def test_default_build_is_that_of_trees():
     mesh = Mesh(np.array(cube()), np.array(CUBE_FACES))
     tree = ObbTree.build(mesh)
 
-    assert (tree.fit, tree.split, tree.leaf_size, tree.max_depth) == tuple(Build())
+    assert (tree.fit, tree.split, tree.leaf_size, tree.max_depth) == tuple(BuildOptions())

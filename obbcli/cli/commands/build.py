@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -16,55 +16,67 @@ from obbcli.cli.options.words import PathName, Whole, byte_count
 from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
 from obbcli.errors import MeshError, ObbError
+from obbcli.tree.options import DEFAULT_BUILD, FITS, SPLITS, BuildOptions
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from obbcli.cli.options.option import CommonOptions
     from obbcli.mesh import Mesh
     from obbcli.report.build import Built
+    from obbcli.tree.options import Fit, Split
 
 SUFFIX = ".obbt"
-FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
-SPLITS = ("median", "center", "compact")
 
 
-class BuildOptions(NamedTuple):
+class TreeOptions(NamedTuple):
     """How trees are built, and whether files may be replaced."""
 
-    fit: Any
-    split: Any
+    fit: Fit
+    split: Split
     leaf_size: int
     max_depth: int | None
     max_memory: int | None
     force: bool
 
+    @property
+    def build(self) -> BuildOptions:
+        """Return what shapes the trees."""
+        return BuildOptions(self.fit, self.split, self.leaf_size, self.max_depth)
+
+
+def _listed(ways: Iterable[str]) -> str:
+    """Return ways as help lists them."""
+    *some, last = ways
+    return f"{', '.join(some)}, or {last}"
+
 
 _TREE = "Tree"
 build_options = gathered(
     "how",
-    BuildOptions,
+    TreeOptions,
     (
         option(
             _TREE,
             "--fit",
-            type=click.Choice(FITS),
-            default=FITS[0],
+            type=click.Choice(tuple(FITS)),
+            default=DEFAULT_BUILD.fit,
             show_default=True,
-            help="Orient boxes by the triangles' areas, by their corners, by their hull's area, "
-            "for the least volume, or not at all.",
+            help=f"Orient boxes {_listed(FITS.values())}.",
         ),
         option(
             _TREE,
             "--split",
-            type=click.Choice(SPLITS),
-            default="compact",
+            type=click.Choice(tuple(SPLITS)),
+            default=DEFAULT_BUILD.split,
             show_default=True,
-            help="Part boxes at the median triangle, at the center, or into the smallest parts.",
+            help=f"Part boxes {_listed(SPLITS.values())}.",
         ),
         option(
             _TREE,
             "--leaf-size",
             type=Whole(1),
-            default=1,
+            default=DEFAULT_BUILD.leaf_size,
             show_default=True,
             metavar="N",
             help="Do not split a box of N triangles.",
@@ -106,7 +118,7 @@ Examples:
     metavar="FILE|DIR",
     takes_dash=False,
 )
-def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -> int:
+def command(meshes: tuple[str, ...], how: TreeOptions, common: CommonOptions) -> int:
     """Build trees over meshes and keep them: gear.stl becomes gear.obbt.
 
     A tree file holds everything that questions need. A mesh that cannot be read is reported, and
@@ -127,7 +139,7 @@ def command(meshes: tuple[str, ...], how: BuildOptions, common: CommonOptions) -
             code = max(code, report(as_error(fault), as_json=common.json))
     failed = sum(isinstance(file, ObbError) for file in files)
     if common.json or failed < len(files):
-        record = build_record(meshes, files, _options_part(how))
+        record = build_record(meshes, files, how.build._asdict())
         emit(record, build_tables, common._replace(output=None), bare=lambda _: "")
     if len(meshes) > 1 and failed:
         verb = "was" if failed == 1 else "were"
@@ -157,7 +169,7 @@ def _targets(meshes: tuple[str, ...], output: Path | None) -> list[tuple[str, Pa
     return list(zip(meshes, targets, strict=True))
 
 
-def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) -> Built:
+def _build(name: str, target: Path, how: TreeOptions, common: CommonOptions) -> Built:
     """Build and save one tree."""
     from obbcli.report.build import Built
     from obbcli.tree.tree import ObbTree
@@ -167,8 +179,7 @@ def _build(name: str, target: Path, how: BuildOptions, common: CommonOptions) ->
     mesh = _mesh(name)
     loaded = time.perf_counter()
     with bar(f"building {name}", len(mesh.triangles), wanted=common.shows_progress) as move:
-        options = _options_part(how)
-        limit = how.max_memory
+        options, limit = how.build._asdict(), how.max_memory
         try:
             tree = ObbTree.build(mesh, **options, lazy=False, max_memory=limit, progress=move)
         except MeshError as fault:
@@ -189,9 +200,3 @@ def _mesh(name: str) -> Mesh:
     if not isinstance(shape, Mesh):
         raise MeshError(name, "is a tree file already", "build from the mesh it was made of")
     return shape
-
-
-def _options_part(how: BuildOptions) -> dict[str, Any]:
-    """Return what shaped the trees."""
-    names = ("fit", "split", "leaf_size", "max_depth")
-    return {name: getattr(how, name) for name in names}

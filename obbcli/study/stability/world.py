@@ -13,6 +13,7 @@ from obbcli.errors import MotionError
 from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, pivot_of
 from obbcli.motion.motion import Motion
+from obbcli.tree.options import BuildOptions
 from obbcli.tree.tree import ObbTree
 
 if TYPE_CHECKING:
@@ -26,15 +27,6 @@ if TYPE_CHECKING:
 # Bounds below are evaluated in doubles, with far fewer roundings than this allows for.
 SLACK = 1.0 + 1e-6
 UNIT = 2.0**-53
-
-
-class BuildOptions(NamedTuple):
-    """How the trees of a body are built."""
-
-    fit: str
-    split: str
-    leaf_size: int
-    max_depth: int | None
 
 
 class Side(NamedTuple):

@@ -13,10 +13,11 @@ from obbcli.motion.body import as_body
 from obbcli.questions.first_contact import Query, first_contact
 from obbcli.questions.pair_question import duration_of
 from obbcli.study.tradeoff.judge import Judge
-from obbcli.study.tradeoff.settings import Build, Scale, Setting, levels_of, plan, reference_of
+from obbcli.study.tradeoff.settings import Scale, Setting, levels_of, plan, reference_of
 from obbcli.study.tradeoff.taking_turns import fair_part, no_collections
 from obbcli.study.tradeoff.trees import Built, Trees
 from obbcli.study.tradeoff.trials import Timing, Tradeoff, Trial, Unreached, front_of
+from obbcli.tree.options import DEFAULT_BUILD
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -168,7 +169,7 @@ class Study:
     def _ask_reference(self) -> bool:
         """Ask for the answer that errors are measured against; return whether it is known."""
         # The default trees are built whatever the budget: without them there is no answer at all.
-        built = self._trees.built(Build(), None)
+        built = self._trees.built(DEFAULT_BUILD, None)
         assert built is not None
         found, _seconds = self._timed(built, self._reference_accuracy, max(self._left, 0.0))
         self._reference = found
@@ -239,13 +240,15 @@ class Study:
     def _crossed(self) -> list[Setting]:
         """Return the fastest trees with the methods that are on the front of the default ones."""
         entries = [entry for entry in self._entries.values() if self._error(entry) is not None]
-        base = self._entries.get(next(iter(self._entries), Setting(Build(), Accuracy())))
+        base = self._entries.get(next(iter(self._entries), Setting(DEFAULT_BUILD, Accuracy())))
         if base is None:
             return []
         same = [e for e in entries if e.setting.accuracy == base.setting.accuracy]
         trees = sorted(same, key=lambda e: e.timing.median)
-        builds = [e.setting.build for e in trees if e.setting.build != Build()][:_CROSSED_TREES]
-        own = [e for e in entries if e.setting.build == Build()]
+        builds = [e.setting.build for e in trees if e.setting.build != DEFAULT_BUILD][
+            :_CROSSED_TREES
+        ]
+        own = [e for e in entries if e.setting.build == DEFAULT_BUILD]
         front = front_of([(self._error(e), e.timing.median) for e in own])
         ways = [e.setting.accuracy for e, on in zip(own, front, strict=True) if on]
         crossed = (Setting(build, way) for way in ways for build in builds)

@@ -13,7 +13,7 @@ from itertools import product
 from typing import TYPE_CHECKING, NamedTuple, get_args
 
 from obbcli.accuracy import ASPECTS, Accuracy, Integrator
-from obbcli.tree.header import Fit, Split
+from obbcli.tree.options import DEFAULT_BUILD, FITS, SPLITS, BuildOptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,22 +29,12 @@ _COARSE_LEAVES = (4, 16)
 _BUILD_DEPTHS = (8, 12)
 # Steps of the sampled method: a few, some, and as many as a large budget is for.
 _FEW, _SOME, _MANY = (1, 4, 16, 64, 256), (1024, 4096), (16384, 65536, 262144, 1048576)
-_SLOW_FITS = ("hull", "min-volume")
-
-
-class Build(NamedTuple):
-    """How the trees of both meshes are built, as `ObbTree.build` takes it."""
-
-    fit: Fit = "triangles"
-    split: Split = "compact"
-    leaf_size: int = 1
-    max_depth: int | None = None
 
 
 class Setting(NamedTuple):
     """What one row measures."""
 
-    build: Build
+    build: BuildOptions
     accuracy: Accuracy
 
 
@@ -104,22 +94,26 @@ def plan(asked: Accuracy, scale: Scale, *, varies_trees: bool) -> Iterator[Setti
 
 
 def _own(asked: Accuracy, base: Accuracy) -> Iterator[Setting]:
-    yield Setting(Build(), base)
-    yield Setting(Build(), asked)
+    yield Setting(DEFAULT_BUILD, base)
+    yield Setting(DEFAULT_BUILD, asked)
 
 
 def _certified(base: Accuracy, scale: Scale) -> Iterator[Setting]:
     if scale.duration > 0:
         for share in _TIME_TOLERANCES:
-            yield Setting(Build(), replace(base, time_tolerance=_round(share * scale.duration)))
+            yield Setting(
+                DEFAULT_BUILD, replace(base, time_tolerance=_round(share * scale.duration))
+            )
         for share in _DISTANCE_TOLERANCES:
-            yield Setting(Build(), replace(base, distance_tolerance=_round(share * scale.size)))
+            yield Setting(
+                DEFAULT_BUILD, replace(base, distance_tolerance=_round(share * scale.size))
+            )
 
 
 def _depths(base: Accuracy, scale: Scale) -> Iterator[Setting]:
     for depth in _DEPTHS:
         if depth < scale.levels:
-            yield Setting(Build(), replace(base, max_depth_a=depth, max_depth_b=depth))
+            yield Setting(DEFAULT_BUILD, replace(base, max_depth_a=depth, max_depth_b=depth))
 
 
 def _sampled(base: Accuracy, scale: Scale, counts: tuple[int, ...]) -> Iterator[Setting]:
@@ -132,24 +126,23 @@ def _sampled(base: Accuracy, scale: Scale, counts: tuple[int, ...]) -> Iterator[
         integrators = ("exact",)
     for steps, integrator in product(counts, integrators):
         way = replace(base, method="sampled", integrator=integrator, steps=steps)
-        yield Setting(Build(), way)
+        yield Setting(DEFAULT_BUILD, way)
 
 
 def _trees(base: Accuracy, *, slow: bool) -> Iterator[Setting]:
-    fits: tuple[Fit, ...] = get_args(Fit)
-    splits: tuple[Split, ...] = get_args(Split)
-    for fit, split in product(fits, splits):
-        if (fit in _SLOW_FITS) is slow:
-            yield Setting(Build(fit, split), base)
+    for fit, split in product(FITS, SPLITS):
+        build = BuildOptions(fit, split)
+        if build.needs_hulls is slow:
+            yield Setting(build, base)
 
 
 def _leaves(base: Accuracy) -> Iterator[Setting]:
     for leaf_size in _LEAF_SIZES:
-        yield Setting(Build(leaf_size=leaf_size), base)
+        yield Setting(BuildOptions(leaf_size=leaf_size), base)
     for leaf_size in _COARSE_LEAVES:
-        yield Setting(Build(leaf_size=leaf_size), replace(base, leaves="boxes"))
+        yield Setting(BuildOptions(leaf_size=leaf_size), replace(base, leaves="boxes"))
     for depth in _BUILD_DEPTHS:
-        yield Setting(Build(max_depth=depth), base)
+        yield Setting(BuildOptions(max_depth=depth), base)
 
 
 def levels_of(triangle_count: int) -> int:

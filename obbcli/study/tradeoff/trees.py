@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from obbcli.motion.body import Shape
-    from obbcli.study.tradeoff.settings import Build
+    from obbcli.tree.options import BuildOptions
 
 
 class _OutOfTimeError(Exception):
@@ -52,7 +52,7 @@ class Trees:
         self._shapes = first, second
         self.bodies = Body(first, a.pose, a.motion), Body(second, b.pose, b.motion)
         self.can_vary = isinstance(first, Mesh) or isinstance(second, Mesh)
-        self._known: dict[Build, Built] = {}
+        self._known: dict[BuildOptions, Built] = {}
 
     @property
     def size(self) -> float:
@@ -67,11 +67,11 @@ class Trees:
             for shape in self._shapes
         )
 
-    def options(self, build: Build) -> dict[str, Any]:
+    def options(self, build: BuildOptions) -> dict[str, Any]:
         """Return options of `ObbTree.build`; none where both bodies came as trees."""
         return build._asdict() if self.can_vary else {}
 
-    def built(self, build: Build, seconds: float | None = None) -> Built | None:
+    def built(self, build: BuildOptions, seconds: float | None = None) -> Built | None:
         """Return the bodies over trees that are built so; None where that takes longer.
 
         Args:
@@ -109,7 +109,7 @@ def _shape(shape: Shape) -> Mesh | ObbTree:
     return ObbTree.open(path) if begins_as_tree(path) else load_mesh(path)
 
 
-def _tree(shape: Mesh | ObbTree, build: Build, look: Callable[[float], object]) -> ObbTree:
+def _tree(shape: Mesh | ObbTree, build: BuildOptions, look: Callable[[float], object]) -> ObbTree:
     if isinstance(shape, ObbTree):
         return shape
     return ObbTree.build(shape, **build._asdict(), lazy=False, progress=look)
