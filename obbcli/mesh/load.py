@@ -55,8 +55,8 @@ _FORMATS = {
     ".vtk": _VTK,
     ".vtu": _VTU,
     ".msh": _GMSH,
-    ".inp": _Format("Abaqus", "cells", "abaqus"),
-    ".avs": _Format("AVS-UCD", "cells", "avsucd"),
+    ".inp": _Format("Abaqus, CalculiX, AVS UCD", "inp"),
+    ".avs": _Format("AVS UCD", "ucd"),
     ".bdf": _NASTRAN,
     ".fem": _NASTRAN,
     ".nas": _NASTRAN,
@@ -212,7 +212,7 @@ def _read_binary_stl(path: Path) -> MeshArrays | None:
 def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
     """Return the error, with what the file seems to be where that is not what its name says."""
     found = beginning(source.data)
-    if found is None or found.suffix == suffix:
+    if found is None or _FORMATS[found.suffix] == _FORMATS.get(suffix):
         return fault
     looks = f"the file looks like {found.words} ({found.suffix})"
     remedy = f"{looks}; {fault.remedy}" if fault.remedy else looks

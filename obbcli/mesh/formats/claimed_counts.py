@@ -23,7 +23,6 @@ _CLAIMS = {
         rb"\s+(-?\d+)",
         _LINE,
     ),
-    "avsucd": re.compile(rb"\A(?:[ \t]*(?:#[^\n]*)?\n)*[ \t]*(-?\d+)[ \t]+(-?\d+)"),
     "netgen": re.compile(
         rb"^[ \t]*(?:surfaceelements|volumeelements|edgesegmentsgi2|points)\w*\s+(-?\d+)", _LINE
     ),

@@ -19,6 +19,7 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
+    (rb"(\*\*[^\n]*\s+)*\*(heading|node|part|preprint|include)\b", ".inp", "an Abaqus deck"),
     (rb"\{[^{}\[\]]*\"asset\"\s*:\s*\{", ".gltf", "a glTF file"),
 )
 #: A line of an ASCII STL beside its title.
