@@ -42,7 +42,7 @@ _VTU = _Format("VTU", "cells", "vtu")
 _GMSH = _Format("Gmsh", "cells", "gmsh")
 _NASTRAN = _Format("Nastran", "cells", "nastran")
 _MEDIT = _Format("Medit", "cells", "medit")
-_TECPLOT = _Format("Tecplot", "cells", "tecplot")
+_TECPLOT = _Format("Tecplot", "tecplot")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
 _FORMATS = {
@@ -63,9 +63,10 @@ _FORMATS = {
     ".mesh": _MEDIT,
     ".meshb": _MEDIT,
     ".vol": _Format("Netgen", "cells", "netgen"),
-    ".su2": _Format("SU2", "cells", "su2"),
+    ".su2": _Format("SU2", "su2"),
     ".dat": _TECPLOT,
     ".tec": _TECPLOT,
+    ".plt": _TECPLOT,
     ".f3grid": _Format("FLAC3D", "cells", "flac3d"),
     ".mdpa": _Format("MDPA", "cells", "mdpa"),
     ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
