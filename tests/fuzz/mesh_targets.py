@@ -11,14 +11,16 @@ from pathlib import Path
 
 import numpy as np
 from cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
-from deck_files import DECKS
 from fuzz.kinds import Target, require
 from gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned, with_fallback
 from gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
+from nastran_decks import SEEDS
 from plain_files import FILES
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
+from obbcli.mesh.formats.nastran import read_nastran
+from obbcli.mesh.source import Source, read_source
 
 SUFFIXES = {
     "stl": (".stl",),
@@ -33,21 +35,20 @@ SUFFIXES = {
     "nastran": (".bdf", ".fem", ".nas"),
     "medit": (".mesh", ".meshb"),
     "tecplot": (".dat", ".tec"),
-    "su2": (".su2",),
-    "ucd": (".avs",),
-    "others": (".vol", ".f3grid", ".mdpa", ".xml"),
+    "others": (".avs", ".vol", ".su2", ".f3grid", ".mdpa", ".xml"),
 }
 
 
 def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     """Return files of these formats, each after a byte that says which suffix it is for."""
-    files = [*FILES.values(), *DECKS]
+    files = [(suffix, data) for suffix, data in FILES.values()]
     body = POSITIONS + INDICES
     uri = "data:;base64," + base64.b64encode(body).decode()
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
     files += [(".glb", data) for data in _documents()]
     files += _odd_files()
+    files += [(".bdf", deck.encode("ascii")) for deck in SEEDS]
     surface = [("triangle", np.array([[0, 1, 2], [0, 2, 3]]))]
     volumes = [("tetra", TETRA)], [("hexahedron", HEXAHEDRON)]
     with tempfile.TemporaryDirectory() as folder:
@@ -113,6 +114,8 @@ def _run(suffixes: tuple[str, ...], data: bytes) -> None:
         )
     if suffix == ".stl":
         _run_from_a_file(data[1:], None if mesh is None else mesh.vertices)
+    if suffix == ".bdf":
+        _run_included(data[1:])
 
 
 def _run_from_a_file(data: bytes, vertices: object) -> None:
@@ -128,6 +131,25 @@ def _run_from_a_file(data: bytes, vertices: object) -> None:
         found is vertices is None or np.array_equal(np.asarray(found), np.asarray(vertices)),
         "both readers say the same",
     )
+
+
+def _run_included(data: bytes) -> None:
+    """Compare a deck with one that does nothing but include it."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "part.inc").write_bytes(data)
+        (Path(folder) / "main.bdf").write_text("$ all of it\nINCLUDE 'part.inc'\n$ no more\n")
+        plain = _deck(Source("part.inc", "part.inc", data))
+        included = _deck(read_source(Path(folder) / "main.bdf"))
+    require(plain == included, "an included deck is the deck")
+
+
+def _deck(source: Source) -> tuple[object, ...] | None:
+    """Return what a deck holds; None where it is refused."""
+    try:
+        vertices, triangles = read_nastran(source)
+    except MeshError:
+        return None
+    return vertices.tolist(), triangles.tolist(), source.notes
 
 
 TARGETS = {

@@ -19,12 +19,10 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
-    (rb"(\*\*[^\n]*\s+)*\*(heading|node|part|preprint|include)\b", ".inp", "an Abaqus deck"),
-    (rb"(#[^\n]*\s+)*(title\s*=\s*\"|variables\s*=)", ".tec", "a Tecplot file"),
-    (rb"#!(tdv|szplt)", ".tec", "a binary Tecplot file"),
-    (rb"(%[^\n]*\s+)*(ndime|nzone)\s*=", ".su2", "an SU2 mesh"),
     (rb"\{[^{}\[\]]*\"asset\"\s*:\s*\{", ".gltf", "a glTF file"),
 )
+#: A statement or a point of a Nastran deck, which may begin with any comment and any title.
+_DECK = rb"(?im)^([ \t]*(CEND[ \t]*(\$.*)?\r?$|BEGIN[ \t]+(BULK|SUPER)\b)|GRID\*?[ \t]*,?[ \t]*\d)"
 #: A line of an ASCII STL beside its title.
 _FACETS = rb"(?im)^[ \t]*(facet|endsolid|end[ \t]+solid)\b"
 _OBJ_WORDS = frozenset(b"v vt vn o g s mtllib usemtl".split())
@@ -56,7 +54,9 @@ def beginning(data: bytes) -> Beginning | None:
             return Beginning(suffix, words)
     if re.match(rb"solid\b", head, re.IGNORECASE) and re.search(_FACETS, head):
         return Beginning(".stl", "an ASCII STL file")
-    return Beginning(".obj", "an OBJ file", is_sure=False) if _is_like_obj(head) else None
+    if _is_like_obj(head):
+        return Beginning(".obj", "an OBJ file", is_sure=False)
+    return Beginning(".bdf", "a Nastran deck") if re.search(_DECK, head) else None
 
 
 def _is_like_obj(head: bytes) -> bool:
