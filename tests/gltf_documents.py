@@ -84,25 +84,31 @@ def instanced(dtype="<f4", **values):
     return builder
 
 
-def meshopt_square(required=True, **changes):
-    """Return a square whose positions and indices are packed by meshoptimizer."""
+def meshopt_square(required=True, name=MESHOPT, codes="TRIANGLES", **changes):
+    """Return a square whose positions and indices are packed by meshoptimizer.
+
+    With a filter among the changes of both views, positions go through that of exponents.
+    """
     codec = pytest.importorskip("meshopt")
-    builder = Builder(extensionsUsed=[MESHOPT])
+    builder = Builder(extensionsUsed=[name])
     if required:
-        builder.document["extensionsRequired"] = [MESHOPT]
+        builder.document["extensionsRequired"] = [name]
     positions = np.asarray(SQUARE, "<f4")
+    if "filter" in changes:
+        positions = codec.encode_filter_exp(positions, 15)
     indices = np.asarray(TRIANGLES, "<u2").reshape(-1)
     packed = [
         (codec.encode_gltf_buffer(positions, "ATTRIBUTES"), 12, 4, "ATTRIBUTES", 48),
-        (codec.encode_gltf_buffer(indices, "TRIANGLES"), 2, 6, "TRIANGLES", 12),
+        (codec.encode_gltf_buffer(indices, codes), 2, 6, codes, 12),
     ]
-    for data, stride, count, mode, length in packed:
+    for data, stride, count, kind, length in packed:
         view = builder.view(data)
         item = builder.document["bufferViews"][view]
         extension = {"buffer": 0, "byteOffset": item["byteOffset"], "byteLength": len(data)}
-        extension |= {"byteStride": stride, "count": count, "mode": mode} | changes
+        extension |= {"byteStride": stride, "count": count, "mode": kind}
+        extension |= changes if kind == "ATTRIBUTES" or "filter" not in changes else {}
         item |= {"buffer": 1, "byteOffset": 0, "byteLength": length}
-        item["extensions"] = {MESHOPT: extension}
+        item["extensions"] = {name: extension}
     builder.document["accessors"] = [
         {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
         {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},

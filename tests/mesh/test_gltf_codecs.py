@@ -27,6 +27,18 @@ def test_gltf_unpacks_meshopt():
 
 
 @pytest.mark.needs("meshopt")
+@pytest.mark.parametrize(
+    "options",
+    [{"name": "KHR_meshopt_compression"}, {"codes": "INDICES"}, {"filter": "EXPONENTIAL"}],
+)
+def test_gltf_unpacks_every_kind_of_meshopt(options):
+    mesh = load_mesh_bytes(with_fallback(meshopt_square(**options)), ".glb")
+
+    assert mesh.vertices.tolist() == SQUARE
+    assert [sorted(row) for row in mesh.triangles.tolist()] == TRIANGLES
+
+
+@pytest.mark.needs("meshopt")
 def test_gltf_takes_the_plain_buffer_where_nothing_requires_the_packed_one():
     moved = (np.asarray(SQUARE, "<f4") + np.float32(5)).tobytes()
     body = moved + np.asarray(TRIANGLES, "<u2").tobytes()
