@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pytest
 from cell_files import VOLUME_KINDS, write
+from deck_files import DECKS
 from gltf_documents import draco_square, meshopt_square, with_fallback
 from nastran_decks import TETRA
 
@@ -236,6 +237,18 @@ def test_codecs_unpack_a_mesh_and_do_nothing_else(
     (tmp_path / "packed.glb").write_bytes(with_fallback(made()))
 
     assert watched(tmp_path, ("info", "packed.glb")) == [INNOCENT]
+
+
+def test_our_readers_of_decks_read_a_mesh_and_do_nothing_else(tmp_path: Path) -> None:
+    names = [f"{number}{suffix}" for number, (suffix, _) in enumerate(DECKS)]
+    for name, (_, data) in zip(names, DECKS, strict=True):
+        (tmp_path / name).write_bytes(data)
+    (tmp_path / "including.inp").write_text(f"*INCLUDE, INPUT={names[0]}\n")
+    names.append("including.inp")
+
+    found = watched(tmp_path, *(("info", name) for name in names))
+
+    assert dict(zip(names, found, strict=True)) == dict.fromkeys(names, INNOCENT)
 
 
 def test_a_deck_that_includes_files_reads_them_and_does_nothing_else(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ _VTU = _Format("VTU", "cells", "vtu")
 _GMSH = _Format("Gmsh", "cells", "gmsh")
 _NASTRAN = _Format("Nastran", "nastran")
 _MEDIT = _Format("Medit", "cells", "medit")
-_TECPLOT = _Format("Tecplot", "cells", "tecplot")
+_TECPLOT = _Format("Tecplot", "tecplot")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
 _FORMATS = {
@@ -55,17 +55,18 @@ _FORMATS = {
     ".vtk": _VTK,
     ".vtu": _VTU,
     ".msh": _GMSH,
-    ".inp": _Format("Abaqus", "cells", "abaqus"),
-    ".avs": _Format("AVS-UCD", "cells", "avsucd"),
+    ".inp": _Format("Abaqus, CalculiX, AVS UCD", "inp"),
+    ".avs": _Format("AVS UCD", "ucd"),
     ".bdf": _NASTRAN,
     ".fem": _NASTRAN,
     ".nas": _NASTRAN,
     ".mesh": _MEDIT,
     ".meshb": _MEDIT,
     ".vol": _Format("Netgen", "cells", "netgen"),
-    ".su2": _Format("SU2", "cells", "su2"),
+    ".su2": _Format("SU2", "su2"),
     ".dat": _TECPLOT,
     ".tec": _TECPLOT,
+    ".plt": _TECPLOT,
     ".f3grid": _Format("FLAC3D", "cells", "flac3d"),
     ".mdpa": _Format("MDPA", "cells", "mdpa"),
     ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
@@ -212,7 +213,7 @@ def _read_binary_stl(path: Path) -> MeshArrays | None:
 def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
     """Return the error, with what the file seems to be where that is not what its name says."""
     found = beginning(source.data)
-    if found is None or found.suffix == suffix:
+    if found is None or _FORMATS[found.suffix] == _FORMATS.get(suffix):
         return fault
     looks = f"the file looks like {found.words} ({found.suffix})"
     remedy = f"{looks}; {fault.remedy}" if fault.remedy else looks

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
+from deck_files import DECKS
 from fuzz.kinds import Target, require
 from gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned, with_fallback
 from gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
@@ -35,13 +36,15 @@ SUFFIXES = {
     "nastran": (".bdf", ".fem", ".nas"),
     "medit": (".mesh", ".meshb"),
     "tecplot": (".dat", ".tec"),
-    "others": (".avs", ".vol", ".su2", ".f3grid", ".mdpa", ".xml"),
+    "su2": (".su2",),
+    "ucd": (".avs",),
+    "others": (".vol", ".f3grid", ".mdpa", ".xml"),
 }
 
 
 def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     """Return files of these formats, each after a byte that says which suffix it is for."""
-    files = [(suffix, data) for suffix, data in FILES.values()]
+    files = [*FILES.values(), *DECKS]
     body = POSITIONS + INDICES
     uri = "data:;base64," + base64.b64encode(body).decode()
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])

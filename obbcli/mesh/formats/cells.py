@@ -1,4 +1,4 @@
-"""VTK, VTU, Gmsh, Abaqus and other formats of finite elements, through meshio.
+"""VTK, VTU, Gmsh and other formats of finite elements, through meshio.
 
 meshio reads these right, but believes counts, takes indices that are out of range and ends the
 process on some errors: everything is checked before and after it.

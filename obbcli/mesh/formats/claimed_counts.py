@@ -23,12 +23,9 @@ _CLAIMS = {
         rb"\s+(-?\d+)",
         _LINE,
     ),
-    "avsucd": re.compile(rb"\A(?:[ \t]*(?:#[^\n]*)?\n)*[ \t]*(-?\d+)[ \t]+(-?\d+)"),
     "netgen": re.compile(
         rb"^[ \t]*(?:surfaceelements|volumeelements|edgesegmentsgi2|points)\w*\s+(-?\d+)", _LINE
     ),
-    "su2": re.compile(rb"^[ \t]*(?:NPOIN|NELEM)[ \t]*=[ \t]*(-?\d+)", _LINE),
-    "tecplot": re.compile(rb"\b(?:NODES|ELEMENTS|[NE])[ \t]*=[ \t]*(-?\d+)", re.IGNORECASE),
 }
 #: Images and other grids whose points are implied by three numbers.
 _GRID = re.compile(rb"^[ \t]*DIMENSIONS[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]+(-?\d+)", _LINE)

@@ -19,6 +19,10 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
+    (rb"(\*\*[^\n]*\s+)*\*(heading|node|part|preprint|include)\b", ".inp", "an Abaqus deck"),
+    (rb"(#[^\n]*\s+)*(title\s*=\s*\"|variables\s*=)", ".tec", "a Tecplot file"),
+    (rb"#!(tdv|szplt)", ".tec", "a binary Tecplot file"),
+    (rb"(%[^\n]*\s+)*(ndime|nzone)\s*=", ".su2", "an SU2 mesh"),
     (rb"\{[^{}\[\]]*\"asset\"\s*:\s*\{", ".gltf", "a glTF file"),
 )
 #: A statement or a point of a Nastran deck, which may begin with any comment and any title.
