@@ -15,6 +15,7 @@ import pytest
 from obbcli.errors import MeshError
 from obbcli.mesh import known_suffixes, load_mesh, load_mesh_bytes
 from obbcli.mesh.formats import not_meshes
+from obbcli.mesh.formats.sniff import beginning
 
 OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 OFF = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
@@ -160,6 +161,13 @@ def test_a_mesh_with_another_name_is_read_as_what_it_is_and_told(tmp_path, name,
 
     assert mesh.triangles.tolist() == [[0, 1, 2]]
     assert mesh.notes == (f"is {words} by its content, and is read as such",)
+
+
+@pytest.mark.parametrize(
+    "data", [b"PLY LAYUP OF A WING\n1 2 3\n", b"off we go\n1 2 3\n", b"solid steel\n1 2 3\n"]
+)
+def test_titles_that_begin_with_a_word_of_another_format_do_not_make_a_file_one(data):
+    assert beginning(data) is None
 
 
 @pytest.mark.parametrize("mark", ["utf-16", "utf-16-be"])

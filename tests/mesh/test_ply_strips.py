@@ -128,3 +128,25 @@ def test_ply_takes_long_strips_as_their_definition_says(order):
     mesh = load_mesh_bytes(strips(*rows, order=order), ".ply")
 
     assert mesh.triangles.tolist() == [triangle for row in rows for triangle in by_definition(row)]
+
+
+@pytest.mark.parametrize("kind", ["int", "ushort"])
+def test_ply_says_which_element_with_lists_it_does_not_know(kind):
+    data = strips([0, 1, 2], faces=[[0, 1, 2]]).replace(b"element tristrips", b"element shards")
+    known = data.replace(
+        b"list int int vertex_indices\nend", b"list int %s of\nend" % kind.encode()
+    )
+
+    mesh = load_mesh_bytes(known, ".ply")
+
+    assert mesh.triangles.tolist() == [[0, 1, 2]]
+    assert mesh.notes == ("element shards is not known and was passed over",)
+    with pytest.raises(MeshError, match="element shards lists vertices, and is not read"):
+        load_mesh_bytes(data, ".ply")
+
+
+def test_ply_says_nothing_of_elements_without_lists_of_vertices():
+    data = strips([97, 98, 0], faces=[[0, 1, 2]]).replace(b"element tristrips", b"element label")
+    data = data.replace(b"list int int vertex_indices\nend", b"list int uchar name\nend")
+
+    assert load_mesh_bytes(data, ".ply").notes == ()

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from obbcli.mesh.formats.ply_header import Element, Header
     from obbcli.mesh.source import MeshArrays, Source
 
+_SURFACE = ("face", "tristrips")
 _INDEX_NAMES = ("vertex_indices", "vertex_index")
 #: They list vertices, and have no surface.
 _WITHOUT_SURFACE = frozenset(("vertex", "edge", "edges", "line", "lines", "point", "points"))
@@ -56,9 +57,11 @@ def _surface_of(
     """Return the triangles of one element, None where it is none of surface."""
     values, counts = next((columns[n] for n in _INDEX_NAMES if n in columns), (None, None))
     if values is None or counts is None:
+        if element.name not in _SURFACE and element.count and _lists_whole_numbers(element):
+            source.note(f"element {element.name[:40]} is not known and was passed over")
         return None
     place = element.name
-    if place not in ("face", "tristrips"):
+    if place not in _SURFACE:
         raise source.error(
             f"element {place[:40]} lists vertices, and is not read", "export it with faces"
         )
@@ -83,10 +86,18 @@ def _surface_of(
     return triangulated(source, vertices, corners, counts)
 
 
+def _lists_whole_numbers(element: Element) -> bool:
+    """Return whether an element has lists that may be of vertices; those of bytes hold words."""
+    return any(
+        p.count_kind is not None and p.kind.kind in "iu" and p.kind.itemsize > 1
+        for p in element.properties
+    )
+
+
 def _no_faces(header: Header) -> str:
     """Return what is wrong with a file without surface."""
     for element in header.elements:
-        if element.name in ("face", "tristrips") and element.count:
+        if element.name in _SURFACE and element.count:
             return f"has no faces: element {element.name} has no list {_INDEX_NAMES[0]}"
     return "has no faces"
 

@@ -13,9 +13,9 @@ HEAD_BYTES = 1 << 16
 #: How files begin, in any case and after any white space; with the suffix they should have and
 #: what they are.
 _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
-    (rb"ply\s", ".ply", "a PLY file"),
+    (rb"ply[ \t]*[\r\n]", ".ply", "a PLY file"),
     (rb"gltf[\x01-\x03]\0\0\0", ".glb", "a GLB file"),
-    (rb"(ST)?C?N?4?n?OFF(\s|\d|\Z)", ".off", "an OFF file"),
+    (rb"(ST)?C?N?4?n?OFF\s*((#[^\n]*\n\s*)*\d|BINARY|\Z)", ".off", "an OFF file"),
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
