@@ -37,8 +37,7 @@ _OBJ = _Format("OBJ", "obj")
 _PLY = _Format("PLY", "ply")
 _OFF = _Format("OFF", "off")
 _GLTF = _Format("glTF", "gltf")
-_VTK = _Format("VTK", "cells", "vtk")
-_VTU = _Format("VTU", "cells", "vtu")
+_VTK = _Format("VTK", "vtk")
 _GMSH = _Format("Gmsh", "cells", "gmsh")
 _NASTRAN = _Format("Nastran", "nastran")
 _MEDIT = _Format("Medit", "cells", "medit")
@@ -53,7 +52,12 @@ _FORMATS = {
     ".glb": _GLTF,
     ".gltf": _GLTF,
     ".vtk": _VTK,
-    ".vtu": _VTU,
+    ".vtu": _VTK,
+    ".vtp": _VTK,
+    ".vti": _VTK,
+    ".vts": _VTK,
+    ".vtr": _VTK,
+    ".vtm": _VTK,
     ".msh": _GMSH,
     ".inp": _Format("Abaqus, CalculiX, AVS UCD", "inp"),
     ".avs": _Format("AVS UCD", "ucd"),

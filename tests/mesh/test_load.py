@@ -223,7 +223,7 @@ def test_load_mesh_refuses_impossible_paths(path):
         (".off", b"glTF\2\0\0\0", r"a GLB file \(\.glb\)"),
         (".glb", b"# vtk DataFile Version 4.2\n", r"a VTK file \(\.vtk\)"),
         (".vtk", b"$MeshFormat\n4.1 0 8\n", r"a Gmsh file \(\.msh\)"),
-        (".msh", b"<VTKFile type=", r"a VTU file \(\.vtu\)"),
+        (".msh", b"<VTKFile type=", r"a VTK XML file \(\.vtu\)"),
         (".stl", b"PK\x03\x04" + bytes(200), "is a zip archive, not a mesh; unpack it"),
         (".vtu", b"\x1f\x8b\x08" + bytes(200), "is a gzip archive, not a mesh; unpack it"),
         (".inp", b"ISO-10303-21;\n", "a STEP file"),

@@ -80,7 +80,7 @@ def faces_of_volumes(
 
     By each cell's own volume: writers disagree on which way a wedge is numbered.
     """
-    inverted = _signed_volumes(nodes, [face.corners for face in cell.faces], points) < 0
+    inverted = signed_volumes(nodes, [face.corners for face in cell.faces], points) < 0
     found = []
     for faces in faces_of_cells(cell, nodes, places):
         corners, pieces = faces.corners.copy(), faces.pieces.copy()
@@ -100,7 +100,7 @@ def _turned(pieces: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.asarray(turned)
 
 
-def _signed_volumes(
+def signed_volumes(
     nodes: NDArray[np.int64], faces: Sequence[tuple[int, ...]], points: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return a multiple of each cell's volume by its corners: above 0 if faces point outwards."""

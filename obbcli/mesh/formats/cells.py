@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from obbcli.mesh.formats.cell_surface import Block, surface
-from obbcli.mesh.formats.claimed_counts import check_claims, check_count
+from obbcli.mesh.formats.claimed_counts import check_claims
 from obbcli.mesh.formats.meshio_guard import ending_files, fenced
 
 if TYPE_CHECKING:
@@ -60,15 +60,33 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
         if kind == "gmsh" and not source.data.lstrip().startswith(b"$"):
             chosen = "ansys"  # Fluent's format, of the same suffix
         check_claims(source, chosen)
-        module = fenced(source, "meshio", lambda: import_module(f"meshio.{chosen}"))
-        with _as_file(source, suffix) as path, ending_files("meshio.", path):
-            mesh = fenced(source, "meshio", lambda: module.read(str(path)))
-        points = _points(source, mesh.points)
-        blocks = [_block(chosen, block.type, block.data) for block in mesh.cells]
-        check_count(source, chosen, sum(len(block.nodes) for block in blocks))
-        return points, surface(source, points, blocks)
+        return read_cells(source, chosen, suffix, None)
 
     return read
+
+
+def read_cells(source: Source, kind: str, suffix: str, cell_count: int | None) -> MeshArrays:
+    """Return the points and triangles of what meshio reads.
+
+    Args:
+        source: the file, whose claims were looked at.
+        kind: meshio's module of the format.
+        suffix: the suffix meshio expects.
+        cell_count: how many cells the file says it has; None where it does not say.
+
+    Raises:
+        MeshError: meshio cannot read it, or reads fewer or more cells.
+    """
+    module = fenced(source, "meshio", lambda: import_module(f"meshio.{kind}"))
+    with _as_file(source, suffix) as path, ending_files("meshio.", path):
+        mesh = fenced(source, "meshio", lambda: module.read(str(path)))
+    points = _points(source, mesh.points)
+    blocks = [_block(kind, block.type, block.data) for block in mesh.cells]
+    read = sum(len(block.nodes) for block in blocks)
+    if cell_count not in (None, read):
+        fault = f"claims {cell_count} cells, but {read} could be read"
+        raise source.error(fault, "it was cut short, or its counts are wrong")
+    return points, surface(source, points, blocks)
 
 
 def _block(module: str, name: str, nodes: Any) -> Block:

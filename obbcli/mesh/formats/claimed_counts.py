@@ -77,17 +77,3 @@ def _number(source: Source, digits: bytes, position: int) -> int:
             at=_line_at(source, position),
         )
     return int(digits)
-
-
-def check_count(source: Source, kind: str, count: int) -> None:
-    """Refuse a file of which fewer cells were read than it claims, where meshio does not look.
-
-    Raises:
-        MeshError: the cells read are not those claimed.
-    """
-    claimed = re.search(rb"^[ \t]*CELL_TYPES[ \t]+(\d+)", source.data, _LINE)
-    if kind == "vtk" and claimed and int(claimed[1]) != count:
-        raise source.error(
-            f"claims {int(claimed[1])} cells, but {count} could be read",
-            "it was cut short, or its counts are wrong",
-        )

@@ -18,7 +18,7 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"(ST)?C?N?4?n?OFF\s*((#[^\n]*\n\s*)*\d|BINARY|\Z)", ".off", "an OFF file"),
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
-    (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTU file"),
+    (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTK XML file"),
     (rb"(\*\*[^\n]*\s+)*\*(heading|node|part|preprint|include)\b", ".inp", "an Abaqus deck"),
     (rb"(#[^\n]*\s+)*(title\s*=\s*\"|variables\s*=)", ".tec", "a Tecplot file"),
     (rb"#!(tdv|szplt)", ".tec", "a binary Tecplot file"),
