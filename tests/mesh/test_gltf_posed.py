@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gltf_documents import morphing, skinned
+from gltf_documents import STRIP, morphing, skinned
 from gltf_files import shifted
 
 from obbcli.errors import MeshError
+from obbcli.mesh.formats.gltf_compressed import DRACO
 
 
 @pytest.mark.parametrize(
@@ -181,30 +182,74 @@ def test_gltf_refuses_a_skin_for_a_mesh_without_joints():
         builder.load()
 
 
-@pytest.mark.needs("vtk")
-def test_gltf_poses_as_vtk_does(tmp_path):
+def vertices_by_vtk(path):
+    """Return the vertices that VTK's reader gives of a file with one mesh."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOGeometry import vtkGLTFReader
 
-    random = np.random.default_rng(5)
-    for k in range(4):
-        shares = random.uniform(0.05, 1, (4, 2))
-        builder = skinned(shares / shares.sum(axis=1, keepdims=True), sets=1)
-        turn = random.normal(size=4)
-        builder.document["nodes"][2] |= {
-            "rotation": (turn / np.linalg.norm(turn)).tolist(),
-            "translation": random.normal(size=3).tolist(),
-            "scale": random.uniform(0.5, 2, 3).tolist(),
-        }
-        path = tmp_path / f"{k}.glb"
-        path.write_bytes(builder.glb())
-        reader = vtkGLTFReader()
-        reader.SetFileName(str(path))
-        reader.ApplyDeformationsToGeometryOn()
-        reader.Update()
+    reader = vtkGLTFReader()
+    reader.SetFileName(str(path))
+    reader.ApplyDeformationsToGeometryOn()
+    reader.Update()
+    leaf = reader.GetOutput()
+    while not leaf.IsA("vtkPolyData"):
+        leaf = leaf.GetBlock(0)
+    return vtk_to_numpy(leaf.GetPoints().GetData())
 
-        leaf = reader.GetOutput()
-        while not leaf.IsA("vtkPolyData"):
-            leaf = leaf.GetBlock(0)
-        theirs = vtk_to_numpy(leaf.GetPoints().GetData())
-        np.testing.assert_allclose(builder.load().vertices, theirs, atol=1e-5)
+
+@pytest.mark.needs("vtk")
+@pytest.mark.parametrize("seed", range(4))
+def test_gltf_poses_as_vtk_does(tmp_path, seed):
+    random = np.random.default_rng(seed)
+    shares = random.uniform(0.05, 1, (4, 2))
+    builder = skinned(shares / shares.sum(axis=1, keepdims=True))
+    turn = random.normal(size=4)
+    builder.document["nodes"][2] |= {
+        "rotation": (turn / np.linalg.norm(turn)).tolist(),
+        "translation": random.normal(size=3).tolist(),
+        "scale": random.uniform(0.5, 2, 3).tolist(),
+    }
+    path = tmp_path / "skin.glb"
+    path.write_bytes(builder.glb())
+
+    np.testing.assert_allclose(builder.load().vertices, vertices_by_vtk(path), atol=1e-5)
+
+
+@pytest.mark.needs("vtk")
+@pytest.mark.parametrize("node_weights", [None, [0.25, -2]])
+def test_gltf_morphs_as_vtk_does(tmp_path, node_weights):
+    builder = morphing([0.75, 0.5], node_weights)
+    path = tmp_path / "morph.glb"
+    path.write_bytes(builder.glb())
+
+    np.testing.assert_allclose(builder.load().vertices, vertices_by_vtk(path), atol=1e-6)
+
+
+@pytest.mark.needs("DracoPy")
+def test_gltf_poses_skins_that_draco_has_packed():
+    import DracoPy
+
+    builder = skinned()
+    primitive = builder.document["meshes"][0]["primitives"][0]
+    held = np.array([[0, 0, 0, 0], [0, 0, 0, 1], [0, 0, 0, 1], [0, 0, 0, 1]], np.uint8)
+    shares = np.array([[1, 0, 0, 0], [0.5, 0, 0, 0.5], [0, 0, 0, 1], [0, 0, 0, 1]], np.float32)
+    faces = np.array([[0, 1, 2], [1, 3, 2]], np.uint32)
+    data = DracoPy.encode(
+        np.array(STRIP, np.float32),
+        faces,
+        quantization_bits=16,
+        preserve_order=True,
+        generic_attributes={7: held, 8: shares},
+    )
+    key = next(a["unique_id"] for a in DracoPy.decode(data).attributes if a["attribute_type"] == 0)
+    ids = {"POSITION": key, "JOINTS_0": 7, "WEIGHTS_0": 8}
+    primitive["attributes"] = {
+        "POSITION": builder.form((4, 3)),
+        "JOINTS_0": builder.form((4, 4), "<u1"),
+        "WEIGHTS_0": builder.form((4, 4)),
+    }
+    primitive["mode"] = 4
+    primitive["extensions"] = {DRACO: {"bufferView": builder.view(data), "attributes": ids}}
+    builder.document["extensionsRequired"] = [DRACO]
+
+    np.testing.assert_allclose(builder.load().vertices, POSED, atol=1e-4)
