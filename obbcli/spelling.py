@@ -26,12 +26,16 @@ def known_keys(found: Iterable[object], known: Sequence[str], where: str) -> Non
 
 def nearest(word: str, known: Sequence[str]) -> str:
     """Return the remedy for a name that is not known: the nearest one that is, or all of them."""
-    from difflib import get_close_matches
-
-    near = get_close_matches(word, known, n=1)
-    if near:
-        return f"did you mean {near[0]!r}?"
-    if not known:
-        return "there is none at all"
+    hint = meant(word, known)
+    if hint or not known:
+        return hint or "there is none at all"
     more = f" and {len(known) - _MOST_LISTED} more" if len(known) > _MOST_LISTED else ""
     return "known are " + ", ".join(known[:_MOST_LISTED]) + more
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """Return the question whether the nearest known name was meant; empty where none is near."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, list(known), n=1)
+    return f"did you mean {near[0]!r}?" if near else ""

@@ -122,6 +122,7 @@ NEEDED = {
     "obbcli.report",
     "obbcli.report.collide",
     "obbcli.report.record",
+    "obbcli.report.rows",
     "obbcli.report.table",
     "obbcli.threads",
     "obbcli.tree",

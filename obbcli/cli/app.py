@@ -95,11 +95,10 @@ class _App(GuardedHelp, click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Find the command; of a misspelt one say what it is nearest to."""
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
-            from difflib import get_close_matches
+            from obbcli.spelling import meant
 
-            near = get_close_matches(args[0], _COMMANDS, n=1)
-            hint = f", did you mean '{near[0]}'?" if near else ""
-            ctx.fail(f"No such command {args[0]!r}{hint}")
+            hint = meant(args[0], _COMMANDS)
+            ctx.fail(f"No such command {args[0]!r}" + (f", {hint}" if hint else ""))
         return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.answers.status import Status
-from obbcli.report.record import answer_document, note_rows
-from obbcli.report.table import Table, count, length, seconds
+from obbcli.report.record import answer_document
+from obbcli.report.rows import as_sampled, contained_rows, cost_rows, source_rows, why_open
+from obbcli.report.table import Table, count, length
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -78,55 +79,6 @@ def collide_bare(record: Record) -> str:
     return f"{result['status']}\n"
 
 
-def source_rows(record: Record) -> list[tuple[str, str]]:
-    """Return the rows that name A and B, and those that say what of them was changed."""
-    sources = [(name.upper(), source) for name, source in record["inputs"].items()]
-    rows = [
-        (name, f"{source['path']} ({count(source['triangle_count'])} triangles)")
-        for name, source in sources
-    ]
-    return [*rows, *note_rows(sources)]
-
-
-def why_open(record: Record) -> str:
-    """Return what an unresolved question may have ended at: a limit, or the end of its digits."""
-    accuracy, stats = record["accuracy"], record["stats"]
-    timeout = accuracy["timeout"]
-    if stats["pops"] >= accuracy["max_iterations"] or (
-        timeout is not None and stats["seconds"]["query"] >= timeout
-    ):
-        return "a limit was reached"
-    return "a limit was reached or the digits of doubles ended"
-
-
-def contained_rows(result: Record) -> list[tuple[str, str]]:
-    """Return the row that says which body lies inside the other."""
-    inner = result["contained"]
-    if inner is None:
-        return []
-    outer = "A" if inner == "b" else "B"
-    return [("contained", f"{inner.upper()}, or a part of it, lies inside {outer}")]
-
-
-def cost_rows(stats: Record) -> list[tuple[str, str]]:
-    """Return the rows that say what a question cost."""
-    return [
-        ("box tests", count(stats["box_tests"])),
-        ("triangle tests", triangle_tests(stats)),
-        ("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"),
-        ("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())),
-    ]
-
-
-def as_sampled(result: Record, *, by_boxes: bool) -> str:
-    """Return what a sampled answer leaves open."""
-    bound = length(result["error_bound"])
-    if by_boxes:
-        return f" of boxes as sampled: the surfaces are at most {bound} apart"
-    off = f"paths at most {bound} off the true ones" if result["error_bound"] else "the true paths"
-    return f" as sampled, on {off}"
-
-
 def _reservation(record: Record) -> str:
     """Return what an approximate answer leaves open."""
     result = record["result"]
@@ -136,18 +88,6 @@ def _reservation(record: Record) -> str:
     if record["accuracy"]["method"] == "sampled" and result["status"] != "overlap_at_start":
         return as_sampled(result, by_boxes=result["witness"] is None and not is_separated)
     return f" of boxes: the surfaces are at most {length(result['error_bound'])} apart"
-
-
-def triangle_tests(stats: Record) -> str:
-    """Return how many triangles were tested, and how many of them in exact arithmetic."""
-    text = count(stats["triangle_tests"])
-    exact = stats["exact_triangle_tests"]
-    return f"{text} ({count(exact)} in exact arithmetic)" if exact else text
-
-
-def _built(stats: Record, side: str) -> str:
-    built, possible = stats[f"nodes_built_{side}"], stats[f"nodes_possible_{side}"]
-    return f"{count(built)} of {count(possible)}"
 
 
 def _pairs_table(result: Record) -> Table:

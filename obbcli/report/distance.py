@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.report.collide import cost_rows, source_rows
 from obbcli.report.record import answer_document
+from obbcli.report.rows import cost_rows, source_rows
 from obbcli.report.table import Table, point
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.report.collide import as_sampled, contained_rows, cost_rows, source_rows, why_open
 from obbcli.report.contacts import contacts_bare, contacts_part, contacts_table
 from obbcli.report.record import answer_document
+from obbcli.report.rows import as_sampled, contained_rows, cost_rows, source_rows, why_open
 from obbcli.report.table import Table, length, point
 
 if TYPE_CHECKING:

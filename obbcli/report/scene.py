@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.answers.status import Status
 from obbcli.motion.body import Body
-from obbcli.report.collide import triangle_tests
 from obbcli.report.contacts import contact_part
 from obbcli.report.record import Source, body_part, document, note_rows, seconds_part
+from obbcli.report.rows import triangle_tests
 from obbcli.report.table import Table, count, point, seconds
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.answers.contact import Contact
-from obbcli.report.collide import source_rows
 from obbcli.report.record import document, finite
+from obbcli.report.rows import source_rows
 from obbcli.report.table import Table, count, seconds
 
 if TYPE_CHECKING:

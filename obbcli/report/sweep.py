@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from obbcli.report.collide import source_rows
 from obbcli.report.record import document
+from obbcli.report.rows import source_rows
 from obbcli.report.table import Table, count, seconds
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
-from obbcli.report.collide import source_rows
+from obbcli.report.rows import source_rows
 from obbcli.report.table import Table, count, length, seconds, size
 from obbcli.report.tradeoff import accuracy_words, build_words, number
 

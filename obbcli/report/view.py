@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.report.collide import source_rows
 from obbcli.report.first_contact import first_contact_bare, first_contact_tables
 from obbcli.report.record import answer_document, document, seconds_part
+from obbcli.report.rows import source_rows
 from obbcli.report.table import Table, count, seconds
 
 if TYPE_CHECKING:

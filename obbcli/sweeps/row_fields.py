@@ -6,6 +6,7 @@ from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from obbcli.errors import MotionError, ObbError
+from obbcli.spelling import meant
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -114,11 +115,7 @@ def vector_of(value: object, where: str) -> Vector:
 
 def unknown(name: str, where: str, what: str, known: Iterable[str] = FIELDS) -> ObbError:
     """Return the error for a name that no field has, with the nearest one that does."""
-    from difflib import get_close_matches
-
-    names = list(known)
-    near = get_close_matches(name, names, n=1)
-    remedy = f"did you mean {near[0]!r}?" if near else f"the {what}s are " + ", ".join(FIELDS)
+    remedy = meant(name, known) or f"the {what}s are " + ", ".join(FIELDS)
     return ObbError(where, f"there is no {what} {_short(name)}", remedy)
 
 
