@@ -104,6 +104,13 @@ def test_elgen_makes_layers():
     assert mesh.is_watertight
 
 
+def test_elements_without_surface_may_be_generated():
+    bars = "*ELEMENT, TYPE=T3D2, ELSET=bars\n9, 1, 2\n*ELGEN\n9, 3, 1, 1\n"
+    copies = "*ELCOPY, OLD SET=bars, ELEMENT SHIFT=50, SHIFT NODES=1\n"
+
+    assert len(deck(GRID + QUAD + bars + copies).triangles) == 2
+
+
 def test_elcopy_copies_a_set():
     copy = "*ELCOPY, OLD SET=first, ELEMENT SHIFT=10, SHIFT NODES=20, NEW SET=up\n"
     twice = "*ELCOPY, OLD SET=UP, ELEMENT SHIFT=10, SHIFT NODES=2\n"

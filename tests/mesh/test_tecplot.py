@@ -230,3 +230,40 @@ def test_files_that_meshio_writes_are_read_as_it_reads_them(tmp_path, name, kind
     np.testing.assert_array_equal(mesh.vertices, other.points)
     np.testing.assert_array_equal(other.cells[0].data[:, :count], [rows])
     assert set(mesh.triangles.ravel().tolist()) == set(rows)
+
+
+@pytest.mark.needs("vtk")
+def test_zones_are_those_that_vtk_reads(tmp_path):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+    from vtkmodules.vtkIOGeometry import vtkTecplotReader
+
+    rows = "\n".join(" ".join(map(str, row)) for row in grid((3, 4, 2), bend=0.25).tolist())
+    cell = "1 2 3 4 5 6 7 8"
+    path = tmp_path / "a.tec"
+    path.write_text(
+        f"{HEAD}{TRIANGLES}ZONE N=8, E=1, F=FEPOINT, ET=BRICK\n{CUBE}{cell}\n"
+        f"ZONE I=3, J=4, K=2, F=POINT\n{rows}\n"
+    )
+    reader = vtkTecplotReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    zones = [reader.GetOutput().GetBlock(at) for at in range(3)]
+    outsides = []
+    for zone in zones:
+        outside = vtkGeometryFilter()
+        outside.SetInputData(zone)
+        outside.Update()
+        outsides.append(outside.GetOutput())
+
+    mesh = load_mesh(path)
+
+    points = np.concatenate([vtk_to_numpy(zone.GetPoints().GetData()) for zone in zones])
+    np.testing.assert_allclose(mesh.vertices, points, rtol=1e-6)
+    counts = [
+        sum(each.GetCell(at).GetNumberOfPoints() - 2 for at in range(each.GetNumberOfCells()))
+        for each in outsides
+    ]
+    ends = np.cumsum([zone.GetNumberOfPoints() for zone in zones])
+    found = np.bincount(np.searchsorted(ends, mesh.triangles[:, 0], side="right"))
+    assert found.tolist() == counts

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from abaqus_decks import area, volume
 from cell_files import CUBE, write
+from deck_files import UCD as CELLS
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
@@ -130,3 +131,45 @@ def test_a_mesh_cut_short_is_refused_or_has_all_cells(end):
         except MeshError:
             continue
         assert len(mesh.triangles) == 4
+
+
+@pytest.mark.needs("vtk")
+def test_cells_are_those_that_vtk_reads(tmp_path):
+    from vtkmodules.vtkIOGeometry import vtkAVSucdReader
+
+    path = tmp_path / "a.avs"
+    path.write_bytes(CELLS)
+    reader = vtkAVSucdReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    cells = [grid.GetCell(at) for at in range(grid.GetNumberOfCells())]
+    corners = [[c.GetPointId(k) for k in range(c.GetNumberOfPoints())] for c in cells]
+
+    mesh = load_mesh(path)
+
+    # A hexahedron with a pyramid on it, a quad on its bottom, and a triangle and a wedge elsewhere.
+    expected = surface_of(corners)
+    found = {frozenset(row) for row in mesh.triangles.tolist()}
+    assert all(any(face <= set(row) for face in found) for row in corners if len(row) > 2)
+    assert len(mesh.triangles) == expected
+
+
+def surface_of(corners):
+    """Return how many triangles cells have, faces of volumes that two share left out."""
+    faces = {
+        3: [(0, 1, 2)],
+        4: [(0, 1, 2, 3)],
+        5: [(0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+        6: [(0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+        8: [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
+    }
+    sets = [
+        (len(row) > 4, frozenset(row[at] for at in face))
+        for row in corners
+        for face in faces.get(len(row), [])
+    ]
+    flat = [corners for is_volume, corners in sets if not is_volume]
+    solid = [corners for is_volume, corners in sets if is_volume]
+    alone = [corners for corners in solid if solid.count(corners) == 1 and corners not in flat]
+    return sum(len(corners) - 2 for corners in [*flat, *alone])

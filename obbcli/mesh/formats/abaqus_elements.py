@@ -27,7 +27,9 @@ _FOUR = {4: "quad"}
 _FAMILIES: dict[str, dict[int, str]] = {
     **dict.fromkeys(("C3D", "DC3D", "DCC3D", "AC3D", "EC3D", "EMC3D", "FC3D", "Q3D"), _SOLID),
     **dict.fromkeys(("SC", "CSS", "COH3D", "COD3D", "GK3D"), _LAYER),
-    **dict.fromkeys(("S", "DS", "STRI", "US", "M3D", "SFM3D", "R3D", "F3D"), _FLAT),
+    **dict.fromkeys(("S", "DS", "STRI", "US", "M3D", "SFM3D", "R3D"), _FLAT),
+    # F3D4 is a quadrilateral of Abaqus and a tetrahedron of CalculiX: refused.
+    "F3D": {3: "triangle", 6: "wedge", 8: "hexahedron"},
     **dict.fromkeys(("CPS", "CPE", "CPEG", "DC2D", "DCC2D", "AC2D", "EMC2D", "WARP2D"), _FLAT),
     **dict.fromkeys(("CAX", "CGAX", "DCAX", "DCCAX", "ACAX"), _FLAT),
     **dict.fromkeys(("COH2D", "COD2D", "COHAX", "CODAX", "GKPS", "GKPE", "GKAX"), _FOUR),

@@ -134,7 +134,7 @@ def generate_elements(scope: Scope, section: Section) -> None:
             _check_size(section, line, count * len(numbers))
             k = np.arange(count, dtype=np.int64)[:, np.newaxis]
             numbers = (numbers + k * step).reshape(-1)
-            nodes = (nodes + k[:, np.newaxis] * node_step).reshape(-1, nodes.shape[1])
+            nodes = (nodes + k[:, np.newaxis] * node_step).reshape(len(numbers), nodes.shape[1])
         lines = np.full(len(numbers) - 1, int(line), dtype=np.int64)
         made = Elements(block.section, block.shape, numbers[1:], nodes[1:], lines)
         scope.add_elements(made, section.label("ELSET"))
