@@ -205,6 +205,14 @@ def test_a_deck_is_told_by_its_content(name, form, tmp_path):
     assert same(load_mesh(tmp_path / name))
 
 
+@pytest.mark.parametrize("begin", ["BEGIN,HYPRBEAM,Square", "BEGIN   HYPRBEAMSquare"])
+def test_sections_of_beams_have_no_surface(begin):
+    section = f"{begin}\nGRIDS,1,0.,0.\nGRIDS,2,1.,0.\nCSEC2,1,1,1,2\nEND,HYPRBEAM\n"
+
+    assert same(load(section + TETRA))
+    assert same(load(f"BEGIN BULK\n{TETRA}{section}ENDDATA\n"))
+
+
 def test_bars_alone_have_no_surface():
     with pytest.raises(
         MeshError, match=r"no shell and no solid element; its cards are CBAR, GRID;"

@@ -29,12 +29,18 @@ EDGES = {
         *((5, 6), (6, 7), (7, 8), (8, 5)),
     ),
 }
+EDGES["CPYRA"] = EDGES["CPYRAM"]
+EDGES["CGASK12"] = EDGES["CPENTA"][:3] + EDGES["CPENTA"][6:]
+EDGES["CGASK16"] = EDGES["CHEXA"][:4] + EDGES["CHEXA"][8:]
 SOLIDS = {
     "CTETRA": ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "CPYRAM": ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)),
     "CPENTA": ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1)),
     "CHEXA": CUBE_PLACES,
 }
+SOLIDS["CPYRA"] = SOLIDS["CPYRAM"]
+SOLIDS |= {"CGASK6": SOLIDS["CPENTA"], "CGASK12": SOLIDS["CPENTA"]}
+SOLIDS |= {"CGASK8": SOLIDS["CHEXA"], "CGASK16": SOLIDS["CHEXA"]}
 #: Surface and volume of each.
 MEASURES = {
     "CTETRA": (1.5 + np.sqrt(3) / 2, 1 / 6),
@@ -42,6 +48,9 @@ MEASURES = {
     "CPENTA": (3 + np.sqrt(2), 0.5),
     "CHEXA": (6, 1),
 }
+MEASURES["CPYRA"] = MEASURES["CPYRAM"]
+MEASURES |= {"CGASK6": MEASURES["CPENTA"], "CGASK12": MEASURES["CPENTA"]}
+MEASURES |= {"CGASK8": MEASURES["CHEXA"], "CGASK16": MEASURES["CHEXA"]}
 
 
 def load(deck: str):
@@ -79,8 +88,8 @@ def volume(mesh) -> float:
     [
         *((name, 3) for name in ("CTRIA3", "CTRIAR", "CTRIA6", "CPLSTN3", "CPLSTS3", "CPLSTN6")),
         *((name, 4) for name in ("CQUAD4", "CQUADR", "CQUAD8", "CQUAD", "CSHEAR", "CPLSTN4")),
-        *((name, 4) for name in ("CPLSTS4", "CPLSTN8", "CPLSTS8")),
-        ("CPLSTS6", 3),
+        *((name, 4) for name in ("CPLSTS4", "CPLSTN8", "CPLSTS8", "CQPSTN")),
+        *((name, 3) for name in ("CPLSTS6", "CTPSTN")),
     ],
 )
 def test_a_surface_element_of_corners_alone_is_its_polygon(name, count):
@@ -101,7 +110,7 @@ def test_a_solid_is_its_boundary_turned_outwards(name, is_mirrored):
     assert volume(mesh) == pytest.approx(MEASURES[name][1], rel=1e-15)
 
 
-@pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.parametrize("name", EDGES)
 def test_each_middle_node_of_a_solid_stands_on_its_own_edge(name):
     corners = SOLIDS[name]
     middles = middle_nodes(name)
@@ -116,7 +125,7 @@ def test_each_middle_node_of_a_solid_stands_on_its_own_edge(name):
     assert volume(mesh) == pytest.approx(MEASURES[name][1], rel=1e-15)
 
 
-@pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.parametrize("name", EDGES)
 def test_each_middle_node_of_a_solid_may_be_missing(name):
     corners = SOLIDS[name]
     for missing in range(len(EDGES[name])):
@@ -132,7 +141,7 @@ def test_each_middle_node_of_a_solid_may_be_missing(name):
         assert volume(mesh) == pytest.approx(MEASURES[name][1], rel=1e-15)
 
 
-@pytest.mark.parametrize("name", ["CQUAD8", "CPLSTN8", "CPLSTS8", "CQUAD"])
+@pytest.mark.parametrize("name", ["CQUAD8", "CPLSTN8", "CPLSTS8", "CQPSTN", "CQUAD"])
 @pytest.mark.parametrize("kept", list(itertools.product([False, True], repeat=4)))
 def test_a_quad_goes_through_the_middle_nodes_it_has(name, kept):
     middles = [5 + k if there else "" for k, there in enumerate(kept)]
@@ -152,7 +161,7 @@ def test_a_quad_of_nine_nodes_goes_through_its_middle():
     assert mesh.notes == ("1 quadratic quad cut into 8 flat pieces through its nodes",)
 
 
-@pytest.mark.parametrize("name", ["CTRIA6", "CPLSTN6", "CPLSTS6"])
+@pytest.mark.parametrize("name", ["CTRIA6", "CPLSTN6", "CPLSTS6", "CTPSTN"])
 @pytest.mark.parametrize("kept", list(itertools.product([False, True], repeat=3)))
 def test_a_triangle_goes_through_the_middle_nodes_it_has(name, kept):
     places = [(0, 0, 0), (2, 0, 0), (0, 2, 0), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
@@ -182,11 +191,26 @@ def test_the_offset_is_read_from_its_own_field(name, corners, middles, field):
         assert (told in mesh.notes) == (place == field)
 
 
+@pytest.mark.parametrize(
+    ("name", "with_middles"),
+    [*((name, False) for name in SOLIDS), *((name, True) for name in EDGES)],
+)
+def test_a_material_system_behind_a_solid_is_no_grid(name, with_middles):
+    middles = middle_nodes(name) if with_middles else []
+    nodes = range(1, len(SOLIDS[name]) + len(middles) + 1)
+    deck = grids([*SOLIDS[name], *middles])
+    line = card(name, nodes)
+
+    mesh = load(deck + line + "+       CORDM   7\n")
+
+    assert mesh.triangles.tolist() == load(deck + line).triangles.tolist()
+
+
 def test_every_element_that_is_read_is_tried_here():
     tried = {
         *("CTRIA3", "CTRIAR", "CTRIA6", "CPLSTN3", "CPLSTS3", "CPLSTN6", "CPLSTS6"),
         *("CQUAD4", "CQUADR", "CQUAD8", "CQUAD", "CSHEAR", "CPLSTN4", "CPLSTS4"),
-        *("CPLSTN8", "CPLSTS8", *SOLIDS),
+        *("CPLSTN8", "CPLSTS8", "CQPSTN", "CTPSTN", *SOLIDS),
     }
 
     assert {name.decode() for name in nastran_cards.ELEMENTS} == tried

@@ -9,7 +9,10 @@ from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
 from obbcli.mesh.formats import nastran_cards
 
-AXISYMMETRIC = ("CTRIAX", "CTRIAX6", "CTRAX3", "CTRAX6", "CQUADX", "CQUADX4", "CQUADX8", "CCONEAX")
+AXISYMMETRIC = (
+    *("CTRIAX", "CTRIAX6", "CTRAX3", "CTRAX6", "CQUADX", "CQUADX4", "CQUADX8", "CCONEAX"),
+    *("CTAXI", "CQAXI"),
+)
 
 
 def load(deck: str):
@@ -171,9 +174,9 @@ def test_a_card_that_is_taken_off_the_list_of_passed_ones_is_refused(monkeypatch
         (f"BEGIN SUPER=1\nBEGIN SUPER = 1\n{TETRA}", r":2: 'BEGIN SUPER=1' stands here a second"),
         (
             f"BEGIN BULK\n{TETRA}BEGIN AUXMODEL=3\n{TETRA}",
-            r"<stdin>:7: 'BEGIN AUXMODEL=3' begins something else than bulk data",
+            r"<stdin>:7: 'BEGIN AUXMODEL 3' begins something else than bulk data",
         ),
-        (f"BEGIN MODULE=3\n{TETRA}", r"<stdin>:1: 'BEGIN MODULE=3' begins something else"),
+        (f"BEGIN MODULE=3\n{TETRA}", r"<stdin>:1: 'BEGIN MODULE 3' begins something else"),
         (
             f"RESTART VERSION=1\nCEND\nBEGIN BULK\n{TETRA}",
             r"<stdin>:1: RESTART takes the rest of the model from another run's database",

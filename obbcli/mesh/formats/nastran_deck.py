@@ -79,7 +79,7 @@ class Deck:
 
     def _found_sections(self) -> list[Section]:
         """Return the sections of bulk data; without BEGIN BULK all of the deck is one."""
-        begins = [begin for begin, _ in statements(self.text, b"BEGIN")]
+        begins = [begin for begin, _ in statements(self.text, b"BEGIN") if self._is_section(begin)]
         first = begins[0] if begins else len(self.text)
         restart = statements(self.text[:first], b"RESTART")
         if begins and restart:
@@ -111,10 +111,19 @@ class Deck:
         end = self.text.find(b"\n", start)
         return len(self.text) if end < 0 else end + 1
 
+    def _statement(self, start: int) -> list[bytes]:
+        """Return the words of the statement in the line that begins at a byte."""
+        line = self.text[start : self._after_line(start)].partition(b"$")[0][:_STATEMENT]
+        return re.split(rb"[\s=,]+", line.strip())
+
+    def _is_section(self, start: int) -> bool:
+        """Return whether BEGIN opens more than the section of a beam, which has no surface."""
+        return not b"".join(self._statement(start)[1:2]).startswith(b"HYPRBEAM")
+
     def _name_of(self, start: int) -> str:
         """Return the name of the section that a BEGIN statement opens."""
-        statement = self.text[start : self._after_line(start)].partition(b"$")[0][:_STATEMENT]
-        words = re.split(rb"[\s=,]+", statement.strip())[1:]
+        statement = self._statement(start)
+        words = statement[1:]
         if words == [b"BULK"]:
             return MAIN
         if words[:1] == [b"BULK"]:
@@ -123,7 +132,7 @@ class Deck:
             return "=".join(word.decode("latin-1") for word in words)
         raise self._at(
             start,
-            f"'{shown(b' '.join(statement.split()))}' begins something else than bulk data "
+            f"'{shown(b' '.join(statement))}' begins something else than bulk data "
             "of the structure or of a superelement",
             "take the section out of the deck if it is no part of the model",
         )

@@ -57,7 +57,7 @@ def read_elements(section: Section, grids: Grids) -> list[Elements]:
 def _read(section: Section, grids: Grids, name: bytes, element: known.Element) -> Elements:
     deck, lines, cards = section
     count = 1 + max(*element.nodes, element.offset or 0)
-    table = field_table(deck, lines, cards[name], count)
+    table = _without_systems(field_table(deck, lines, cards[name], count))
     numbers = whole_numbers(table[:, 0])
     _refuse(section, name, table[:, 0], numbers <= 0, "a number above 0")
     words = table[:, element.nodes]
@@ -82,6 +82,18 @@ def _read(section: Section, grids: Grids, name: bytes, element: known.Element) -
         values, wrong = real_numbers(table[:, element.offset])
         offsets = int((wrong | (values != 0)).sum())
     return Elements(name, numbers, cards[name].lines, rows, offsets)
+
+
+def _without_systems(table: NDArray[np.bytes_]) -> NDArray[np.bytes_]:
+    """Return fields without a material's system, which may follow the last GRID of a solid."""
+    if table.dtype.itemsize < len(known.MATERIAL_SYSTEM):
+        return table
+    letters = table.view(np.uint8).reshape(*table.shape, -1)
+    named = (letters == known.MATERIAL_SYSTEM[0]).any(axis=2)
+    for row, field in np.argwhere(named).tolist():
+        if table[row, field].strip() == known.MATERIAL_SYSTEM:
+            table[row, field:] = b""
+    return table
 
 
 def _refuse(
