@@ -13,6 +13,7 @@ from obbcli.mesh.formats.cell_faces import (
     faces_of_volumes,
     polygons,
 )
+from obbcli.mesh.formats.cell_repeats import repeated_volumes
 from obbcli.mesh.formats.cell_types import CELLS, WITHOUT_AREA
 from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import counted, its
@@ -62,22 +63,16 @@ def surface(
     """
     flat: list[Faces] = []
     solid: list[Faces] = []
-    start = volume_count = 0
-    for block in blocks:
-        count = len(block.nodes)
-        places = block.places if block.places is not None else start + np.arange(count)
-        start += count
-        if block.kind in WITHOUT_AREA or count == 0:
-            continue
+    volume_count = 0
+    for block in _once_each(source, points, blocks):
+        nodes, places = block.nodes, np.asarray(block.places)
         if block.kind == "polyhedron":
-            volume_count += count
-            solid += faces_of_polyhedra(source, block.nodes, places, len(points))
-            continue
-        nodes = _checked(source, block, len(points))
-        if block.kind == "polygon":
+            volume_count += len(nodes)
+            solid += faces_of_polyhedra(source, nodes, places, len(points))
+        elif block.kind == "polygon":
             flat.append(polygons(nodes, places))
         elif (cell := CELLS[block.kind]).is_volume:
-            volume_count += count
+            volume_count += len(nodes)
             solid += faces_of_volumes(cell, nodes, places, points)
         else:
             flat += faces_of_cells(cell, nodes, places)
@@ -86,6 +81,27 @@ def surface(
     _tell(source, volume_count, flat, kept)
     pieces, counts = _in_order(flat, kept)
     return triangulated(source, points, pieces, counts)
+
+
+def _once_each(source: Source, points: NDArray[np.float64], blocks: Iterable[Block]) -> list[Block]:
+    """Return the cells that have faces, checked and with places, and each volume once."""
+    found = []
+    start = 0
+    for block in blocks:
+        count = len(block.nodes)
+        places = block.places if block.places is not None else start + np.arange(count)
+        start += count
+        if block.kind in WITHOUT_AREA or count == 0:
+            continue
+        is_list = block.kind == "polyhedron"
+        nodes = block.nodes if is_list else _checked(source, block, len(points))
+        found.append(Block(block.kind, nodes, places))
+    repeated = repeated_volumes(source, [(block.kind, block.nodes) for block in found])
+    return [
+        Block(block.kind, block.nodes[~again], block.places[~again]) if again.any() else block
+        for block, again in zip(found, repeated, strict=True)
+        if block.places is not None
+    ]
 
 
 def _checked(source: Source, block: Block, point_count: int) -> NDArray[np.int64]:
