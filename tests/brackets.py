@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import mpmath
+
 from obbcli import FirstContact, Status
 
 
@@ -21,3 +23,12 @@ def assert_at(answer: FirstContact, time: float, width: float) -> None:
     low, high = bounds(answer)
     assert high - low <= width
     assert low - width <= time <= high + width
+
+
+def assert_holds(answer: FirstContact, truth: mpmath.mpf) -> tuple[float, float]:
+    """Fail unless the bracket of a contact holds the true time; return it."""
+    assert answer.status is Status.CONTACT
+    low, high = bounds(answer)
+    with mpmath.workdps(60):
+        assert mpmath.mpf(low) <= truth <= mpmath.mpf(high)
+    return low, high

@@ -131,15 +131,11 @@ def fastest(a: Mover, b: Mover) -> float:
 
 
 def assert_bracket(answer: FirstContact, lo: Any, hi: Any) -> None:
-    """Fail unless the answer is a contact whose bracket fits the true first time in [lo, hi].
-
-    Where only closeness is proven, the true time may come after the bracket.
-    """
+    """Fail unless the answer is a contact whose bracket fits the true first time in [lo, hi]."""
     assert answer.status is Status.CONTACT
     first, last = bounds(answer)
     assert first <= hi
-    if answer.evidence == "intersecting":
-        assert last >= lo
+    assert last >= lo
 
 
 def assert_width(answer: FirstContact, a: Mover, b: Mover, tolerance: float) -> None:

@@ -176,4 +176,4 @@ def test_turning_point_that_runs_into_a_point_is_answered() -> None:
     assert answer.status is Status.CONTACT
     assert answer.time == pytest.approx(3.0, abs=1e-13)
     assert answer.distance is not None
-    assert answer.distance <= 1e-13
+    assert answer.distance <= 1e-12

@@ -27,9 +27,10 @@ class Contact:
         time_bounds: s; (lo, hi): no contact before lo, contact at hi as `evidence` says. hi is None
             where boxes met or nothing is known beyond lo.
         evidence: `"intersecting"`: triangles proven to meet at hi; `"within_tolerance"`: points of
-            both proven closer than `distance` at hi; `"boxes"`: boxes that stand for triangles met;
-            `"sampled"`: time, bounds and place are those of the sampled paths, and nothing is
-            proven but `error_bound`.
+            both proven closer than `distance` at hi, and where that is more than the clearance,
+            contact in the bracket or none until they have parted again; `"boxes"`: boxes that stand
+            for triangles met; `"sampled"`: time, bounds and place are those of the sampled paths,
+            and nothing is proven but `error_bound`.
         point: world coordinates at `time`, midway between `point_a` and `point_b`; of a body inside
             the other, one of its vertices.
         point_a: the nearest point of A.

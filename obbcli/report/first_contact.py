@@ -43,7 +43,7 @@ def first_contact_tables(record: Record) -> list[Table]:
     """Return the tables of a record: the answer, and the list where it was asked for."""
     result = record["result"]
     rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
-    rows += [*_bracket(result), *contained_rows(result)]
+    rows += [*_bracket(record), *contained_rows(result)]
     if result["point"] is not None:
         rows.append(("point", point(result["point"])))
     if result["normal"] is not None:
@@ -84,12 +84,16 @@ def _sentence(record: Record) -> str:
     return f"first contact of boxes at t = {time!r} s: none before, and then {bound}"
 
 
-def _bracket(result: Record) -> list[tuple[str, str]]:
+def _bracket(record: Record) -> list[tuple[str, str]]:
     """Return what is proven of the time, where it has two ends."""
+    result = record["result"]
     low, high = result["time_bounds"] or (None, None)
     if high is None or high == 0 or result["evidence"] == "sampled":
         return []
     at_high = _AT_HI[result["evidence"]].format(length(result["distance"]))
     if low == high:
         return [("bracket", f"no contact before; at that time {at_high}")]
+    if result["distance"] > record["accuracy"]["clearance"]:
+        passing = f"contact, or they pass each other at most {length(result['distance'])} apart"
+        return [("bracket", f"no contact before; up to {high - low:.2g} s later {passing}")]
     return [("bracket", f"no contact before; {high - low:.2g} s later {at_high}")]

@@ -178,8 +178,8 @@ void ContactQuery::visit(const Entry& entry) {
         }
         if (!entry.a.is_triangle() || !entry.b.is_triangle()) {
             meet_boxes(entry);
-        } else if (is_translation_ && clearance_ == 0) {
-            meet_in_translation(entry);
+        } else if (is_translation_) {
+            clearance_ > 0 ? meet_within_clearance(entry) : meet_in_translation(entry);
         } else {
             meet_triangles(entry);
         }

@@ -74,7 +74,7 @@ ContactPlace ContactQuery::place(const Contact& contact) {
 ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
     const std::optional<PairContact> found =
         first_contact(a_.posed_triangle(contact.a), b_.posed_triangle(contact.b),
-                      {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration});
+                      linear_motion());
     return {found->point,
             found->point,
             found->touch.normal,

@@ -22,8 +22,9 @@ struct LaterLow {
 // with the pose (5 u) and with positions (6 u), and sums over up to nine products (12 u).
 constexpr double kRelative = Spin::kMatrixError + 36 * kUnitRoundoff;
 
-// A stalled pair waits for so many others to prove contact within the tolerance.
-constexpr std::uint64_t kStallPops = 2000;
+// Thousands of pairs that come within the clearance at one time are not all asked: after so many
+// pops the earliest so far ends the search, as soon as the bracket is as narrow as asked.
+constexpr std::uint64_t kCrowdPops = 4096;
 // Beyond this an angle in twice the digits of a double says nothing any more.
 constexpr double kMostRadians = 0x1p50;
 
@@ -175,12 +176,15 @@ bool ContactQuery::has_ended() {
     lower_bound_ = std::min({next, stalled, duration_});
     if (exact_ && (next >= exact_->high || options_.any_contact)) {
         finish(exact_);
+    } else if (exact_ && clearance_ > 0 && counts_.pops > exact_pops_ + kCrowdPops &&
+               lower_bound_ >= exact_->high - time_tolerance_) {
+        exact_->low = std::min(lower_bound_, exact_->low);
+        finish(exact_);
     } else if (proof_ && (options_.any_contact || lower_bound_ >= proof_->time - time_tolerance_)) {
         finish(Contact{std::min(lower_bound_, proof_->time), proof_->time, Evidence::kIntersecting,
                        proof_->a, proof_->b, 0, 0});
-    } else if (!stalled_.empty() &&
-               (next > stalled + time_tolerance_ || counts_.pops > stall_pops_ + kStallPops)) {
-        end_stalled(stalled_);
+    } else if (!stalled_.empty() && (next > stall_end_ || counts_.pops > stall_pops_)) {
+        settle_stalled(next);
     } else if (queue_.is_empty()) {
         finish(std::nullopt);
     }

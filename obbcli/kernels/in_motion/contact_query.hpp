@@ -35,8 +35,9 @@ struct ContactQueryOptions {
 
 enum class Evidence : std::uint8_t { kNone, kIntersecting, kWithinTolerance, kBoxes };
 
-// A proven bracket of the first contact: none before `low`; contact at `high` as `evidence` says.
-// Times in s.
+// A proven bracket of the first contact: none before `low`, and contact at `high` as `evidence`
+// says. Where `distance` exceeds the clearance, contact is not proven: the triangles are in contact
+// by `high`, or they pass each other and have parted by then. Times in s.
 struct Contact {
     double low = 0;
     double high = 0;
@@ -114,6 +115,19 @@ class ContactQuery {
         std::array<SeenLately, 2> seen;
     };
 
+    // Bounds on the distance of two triangles, mesh units, and the direction from A's nearest point
+    // to B's; zeros where they may intersect.
+    struct Gap {
+        double low, high;
+        Vec3 direction;
+    };
+    // How long a pair that is near stays so: it is near at `last`, and at `end`, if not in contact,
+    // it is proven no longer to be near, unless that is the duration.
+    struct Nearness {
+        double last, end;
+        bool is_contact; // whether it is proven to be in contact at `end`
+    };
+
     void set_units();
     void set_motion();
     void set_time(double time);
@@ -125,7 +139,8 @@ class ContactQuery {
     void push(const Entry& entry);
     void visit(const Entry& entry);
     void part(const Entry& entry);
-    void set_planes(const Entry& entry, const LinearMotion& motion, const Touch& touch);
+    [[nodiscard]] LinearMotion linear_motion() const;
+    void set_planes(const Entry& entry, const Touch& touch);
     [[nodiscard]] static double top_of(const Triangle& t, Vec3 direction);
     [[nodiscard]] bool may_tie(const Entry& entry) const;
     [[nodiscard]] bool are_sides(const Entry& entry, const Tie& tie) const;
@@ -146,18 +161,29 @@ class ContactQuery {
     [[nodiscard]] bool is_over(const Entry& entry);
     void meet_triangles(const Entry& entry);
     void meet_in_translation(const Entry& entry);
+    void meet_within_clearance(const Entry& entry);
+    void solve_within_clearance(const Entry& entry);
+    void keep(const Contact& contact);
     void meet_boxes(const Entry& entry);
     [[nodiscard]] bool meet_at_start(const Entry& entry);
     [[nodiscard]] bool prove_contact(const Entry& entry);
     [[nodiscard]] bool surely_intersect_at(const Entry& entry, double time);
-    [[nodiscard]] double distance_at(const Entry& entry, double time, Vec3& direction);
+    [[nodiscard]] Gap gap_at(const Entry& entry, double time);
+    [[nodiscard]] Nearness nearness_from(const Entry& entry, double near);
     [[nodiscard]] bool has_ended();
     [[nodiscard]] static std::uint64_t key_of(const NodeRef& a, const NodeRef& b);
     [[nodiscard]] bool is_ready() const;
     void name_triangles(Contact& contact) const;
     void report(Contact contact);
-    [[nodiscard]] std::optional<Contact> contact_of(std::span<const Entry> stalled);
-    void end_stalled(std::span<const Entry> stalled);
+    [[nodiscard]] std::optional<Contact> soon_after(std::span<const Entry> stalled);
+    [[nodiscard]] std::optional<Contact> undecided(std::span<const Entry> stalled);
+    [[nodiscard]] Contact as_near(std::span<const Entry> stalled, double low, double high);
+    [[nodiscard]] std::optional<Contact> of_patches(std::span<const Entry> stalled, double reach);
+    [[nodiscard]] bool surely_meets_patch(std::span<const Entry> patch, bool shares_a, double time);
+    void stall(const Entry& entry);
+    [[nodiscard]] bool is_near_enough(const Entry& entry);
+    void end_stalled(const Entry& entry);
+    void settle_stalled(double next);
     void give_up(double time);
     void finish(std::optional<Contact> contact);
     [[nodiscard]] Contact in_seconds(Contact contact) const;
@@ -192,7 +218,10 @@ class ContactQuery {
     std::uint32_t tie_limit_ = 0; // how many triangles may be looked at for a tie
     std::optional<Wait> wait_;
     std::vector<Entry> stalled_; // pairs that rounding lets nobody push on, earliest first
-    std::uint64_t stall_pops_ = 0;
+    double stall_end_ = 0;       // once all pairs are past this time, the stalled ones are settled
+    std::uint64_t stall_pops_ = 0; // or after so many pops
+    bool is_patient_ = true;       // whether these may still be raised
+    std::uint64_t exact_pops_ = 0; // when `exact_` was found
     std::vector<Contact> found_;              // of `each_pair`, not taken yet
     std::unordered_set<std::uint64_t> known_; // the pairs of all contacts found
     std::optional<Contact> contact_;

@@ -31,7 +31,7 @@ bool ContactQuery::has_limits() const { return options_.limits.boxes != BoxLimit
 // Asks two triangles under a pair before all that may be earlier is opened: of pairs that touch at
 // one time the boxes are all earlier than the first triangles.
 void ContactQuery::probe(const Entry& entry) {
-    if (!is_translation_ || clearance_ > 0 || options_.each_pair || has_limits() ||
+    if (!is_translation_ || options_.each_pair || has_limits() ||
         counts_.pops < std::max(next_probe_, kProbePatience)) {
         return;
     }
@@ -41,7 +41,7 @@ void ContactQuery::probe(const Entry& entry) {
         at = nearer_half(at, at.b.is_triangle() ||
                                  (!at.a.is_triangle() && size_of(a_, at.a) >= size_of(b_, at.b)));
     }
-    meet_in_translation(at);
+    clearance_ > 0 ? solve_within_clearance(at) : meet_in_translation(at);
 }
 
 // Of a leaf, its first triangle.
@@ -65,11 +65,15 @@ ContactQuery::Entry ContactQuery::nearer_half(const Entry& entry, bool opens_a) 
     return half;
 }
 
-void ContactQuery::set_planes(const Entry& entry, const LinearMotion& motion, const Touch& touch) {
+// Of bodies that come within a clearance, the plane's two sides are that far apart then, and further
+// before: what holds of contact holds of nearness.
+void ContactQuery::set_planes(const Entry& entry, const Touch& touch) {
     planes_.clear();
+    exact_pops_ = counts_.pops;
     if (has_limits()) {
         return;
     }
+    const LinearMotion motion = linear_motion();
     const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
     for (const auto& plane : {ContactPlane::of_axis(a, b, motion, touch),
                               ContactPlane::of_motion(a, b, motion, touch)}) {

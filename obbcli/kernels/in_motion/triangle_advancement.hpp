@@ -1,4 +1,4 @@
-// Steps for pairs of moving triangles, and proofs that two of them meet.
+// Steps for pairs of moving triangles.
 #pragma once
 
 #include "in_motion/advancement.hpp"
@@ -31,8 +31,5 @@ struct TriangleStep {
 // direction between the closest points must be among the axes; it is passed as `hint` (or zero).
 [[nodiscard]] TriangleStep time_apart(const SpinningTriangle& a, const SpinningTriangle& b,
                                       const MovingFrame& frame, Vec3 hint);
-
-// Whether the true triangles surely intersect, where each point is known to within `error`.
-[[nodiscard]] bool surely_intersect(const Triangle& a, const Triangle& b, double error);
 
 } // namespace obb

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from obbcli.answers.status import Status
 from obbcli.motion.body import Body, missing_pivot
 from obbcli.questions.legs.leg import Leg, length_of
+from obbcli.questions.legs.nearness import near_until
 from obbcli.questions.legs.relay import Relay
 from obbcli.questions.legs.slack import jump_at, rounding_of
 from obbcli.questions.steady import SEPARATED
@@ -55,8 +57,10 @@ class PathQuery(Relay):
     """The question about bodies of which one changes its velocities, leg by leg.
 
     A leg is first asked with its slack as clearance: apart is then a proof for the true paths, and
-    the lower bound too. Where that is contact, the leg's own path is asked for its evidence, and
-    then the instant at which the next leg starts; if neither shows any, closeness remains.
+    the lower bound too. Where that is contact, the leg's own path is asked for its evidence (with
+    its slack off the clearance, if there is one), and then the instant at which the next leg
+    starts. If neither shows any, closeness remains, and the bracket holds all of the time for which
+    the bodies are as close.
 
     Args:
         pair: the question.
@@ -64,6 +68,8 @@ class PathQuery(Relay):
     """
 
     _near: Contact | None = None
+    _near_leg: Leg  # on which the bodies come near
+    _later_leg: Leg | None = None  # the one after it
     _is_at_end = False  # whether the present question is the instant after the near leg
 
     def __init__(self, pair: PairQuestion, *, any_contact: bool = False) -> None:
@@ -92,29 +98,80 @@ class PathQuery(Relay):
             return replace(found, time=low, time_bounds=(low, None))
         if found.time is not None:
             found = self._on_clock(found)
-            if self._near is not None or self._leg.slack == 0:
+            if self._leg.slack == 0 or (self._near is not None and self._holds(found)):
                 return found
-            self._near = found
-            self._go_on(self._leg, self._question(self._leg))
-            return None
+            if self._near is None:
+                return self._come_near(found)
+        if self._near is not None:
+            return self._look_closer()
         leg = next(self._legs, None)
-        if self._near is None:
-            if leg is None:
-                return SEPARATED
-            self._go_on(leg, self._ask_about(leg))
+        if leg is None:
+            return SEPARATED
+        self._go_on(leg, self._ask_about(leg))
+        return None
+
+    def _come_near(self, near: Contact) -> Contact | None:
+        """Ask for evidence of contact on a leg whose bodies come near."""
+        self._near, self._near_leg = near, self._leg
+        # At t = 0 nothing was rounded yet.
+        is_at_start = near.time == 0 and self._leg.start == 0 and self._pair.accuracy.clearance > 0
+        leg = self._leg._replace(duration=0.0, slack=0.0) if is_at_start else self._leg
+        self._go_on(leg, self._ask_closely(leg))
+        return None
+
+    def _look_closer(self) -> Contact | None:
+        """Ask the next question about bodies that are near, or return that nothing is decided."""
+        assert self._near is not None
+        if self._leg.slack == 0 and self._near_leg.slack > 0 and not self._is_at_end:
+            self._go_on(self._near_leg, self._ask_closely(self._near_leg))
             return None
         # The pose after a leg may touch although the leg's own end, rounded, does not.
-        if leg is None or self._is_at_end or not self._is_soon(leg.start):
-            return self._near
-        self._is_at_end = True
-        instant = leg._replace(duration=0.0)
-        self._go_on(instant, self._question(instant))
-        return None
+        if not self._is_at_end and (leg := next(self._legs, None)) is not None:
+            self._later_leg = leg
+            if self._is_soon(leg.start):
+                self._is_at_end = True
+                instant = leg._replace(duration=0.0)
+                self._go_on(instant, self._ask_closely(instant))
+                return None
+        return self._near if self._any_contact else self._undecided(self._near)
+
+    def _undecided(self, near: Contact) -> Contact:
+        """Return near bodies with a bracket that holds all of the time for which they are near."""
+        assert near.time_bounds is not None
+        assert near.distance is not None or near.evidence == "boxes"
+        low, high = near.time_bounds
+        if high is None or near.distance is None:
+            return near
+        later = [] if self._later_leg is None else [self._later_leg]
+        legs = chain((self._near_leg, *later), self._legs)
+        end, distance = near_until(self._pair, legs, max(low - self._near_leg.start, 0.0))
+        return replace(
+            near,
+            status=Status.CONTACT,
+            time_bounds=(low, max(end, high)),
+            distance=max(distance, near.distance + self._near_leg.slack),
+        )
+
+    def _holds(self, found: Contact) -> bool:
+        """Return whether contact on a leg is contact on the true paths, as far as can be said."""
+        if found.evidence != "within_tolerance" or self._leg.slack == 0:
+            return True
+        assert found.distance is not None
+        accuracy = self._pair.accuracy
+        enough = max(accuracy.clearance - self._leg.slack, accuracy.distance_tolerance or 0.0)
+        return found.distance <= enough
 
     def _is_soon(self, time: float) -> bool:
         assert self._near is not None
         assert self._near.time is not None
         return time - self._near.time <= self._pair.time_tolerance
+
+    def _ask_closely(self, leg: Leg) -> SteadyQuery:
+        """Return the question whose contact is one on the true paths too, where that can be had."""
+        if self._pair.accuracy.clearance == 0:
+            return self._question(leg)
+        clearance = max(self._pair.accuracy.clearance - leg.slack, 0.0)
+        return self._question(leg, clearance=clearance)
 
     def _ask_about(self, leg: Leg) -> SteadyQuery:
         return self._question(leg, clearance=self._pair.accuracy.clearance + leg.slack)
