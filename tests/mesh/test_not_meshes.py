@@ -77,6 +77,7 @@ OTHERS = {
     "3mf": (zipped("3D/3dmodel.model"), "is a 3MF file, not a mesh; export the shape"),
     "collada": (b"<?xml version='1.0'?>\n<!-- x -->\n<COLLADA ", "is a COLLADA scene, not a mesh"),
     "mtl": (b"# x\n\nnewmtl red\nKd 1 0 0\n", "is a library of materials, which belongs to an OBJ"),
+    "dwg": (b"AC1032\0\0\0\0", "is a DWG drawing, not a mesh"),
     "zeros": (bytes(5000), "holds nothing but zeros, not a mesh; copy or download it again"),
     "blank": (b" \n\t\r\n" * 2000, "holds nothing but white space"),
     "empty": (b"", "is empty, expected a mesh; write the file again"),
