@@ -43,7 +43,8 @@ def as_floats(
         # A copy, so that a caller who writes to the source later changes no answer.
         array = np.array(value, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as fault:
-        raise error(name, f"expected numbers of shape {_in_words(shape)}", f"{fault}") from fault
+        wanted = f"expected numbers of shape {_in_words(shape)}"
+        raise error(name, wanted, "give numbers alone, as many in each row") from fault
     # Most that comes here is small and as it should be, and NumPy is slow to start.
     if array.shape != shape and (
         array.ndim != len(shape)

@@ -30,6 +30,7 @@ T = TypeVar("T")
 
 # Some 300,000 bodies. To find out that something longer is no scene would take minutes.
 _MOST_BYTES = 64 << 20
+_LONG_NUMBER = "a number has too many digits"
 _KEYS = ("duration", "accuracy", "body", "ignore")
 _BODY_KEYS = ("name", "mesh", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
@@ -117,7 +118,7 @@ def _parse_toml(text: str, place: str) -> dict[str, Any]:
         line = found[2] or text.count("\n") + 1
         raise SceneError(f"{place}:{line}", f"is no TOML: {found[1]}") from fault
     except ValueError as fault:  # Python reads no whole number of so many digits
-        raise SceneError(place, f"is no TOML: {fault}") from fault
+        raise SceneError(place, f"is no TOML: {_LONG_NUMBER}") from fault
     return tree
 
 
@@ -135,11 +136,12 @@ def _parse_json(text: str, place: str) -> dict[str, Any]:
     try:
         tree = json.loads(text, object_pairs_hook=unique)
     except json.JSONDecodeError as fault:
-        raise SceneError(f"{place}:{fault.lineno}", f"is no JSON: {fault.msg}") from fault
+        words = f"is no JSON from column {fault.colno} on"
+        raise SceneError(f"{place}:{fault.lineno}", words) from fault
     except ObbError:
         raise
     except ValueError as fault:
-        raise SceneError(place, f"is no JSON: {fault}") from fault
+        raise SceneError(place, f"is no JSON: {_LONG_NUMBER}") from fault
     if not isinstance(tree, dict):
         raise SceneError(place, "is no JSON object", 'begin with {"body": [..]}')
     return tree

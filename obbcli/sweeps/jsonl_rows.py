@@ -40,8 +40,14 @@ def _pairs(line: str, where: str) -> list[tuple[str, Any]]:
         pairs = json.loads(line, object_pairs_hook=_Object, parse_constant=_refuse)
     except RecursionError as fault:
         raise ObbError(where, "is nested too deeply", "write one object a line") from fault
+    except json.JSONDecodeError as fault:
+        words = f"is no JSON from column {fault.colno} on"
+        raise ObbError(where, words, "write one object a line") from fault
+    except _NoNumberError as fault:
+        raise ObbError(where, f"is no JSON: {fault} is no number", "write a number") from fault
     except ValueError as fault:
-        raise ObbError(where, f"is no JSON: {fault}", "write one object a line") from fault
+        words = "is no JSON: a number has too many digits"
+        raise ObbError(where, words, "write one object a line") from fault
     if not isinstance(pairs, _Object):
         raise ObbError(where, "is no JSON object", 'write one a line, as {"vel": [0, 0, 1]}')
     return pairs
@@ -51,8 +57,12 @@ class _Object(list[tuple[str, Any]]):
     """An object with all its keys, also those that it has twice."""
 
 
+class _NoNumberError(ValueError):
+    """A word that Python's JSON takes for a number, and that is none of JSON."""
+
+
 def _refuse(word: str) -> None:
-    raise ValueError(f"{word} is no number")
+    raise _NoNumberError(word)
 
 
 def _identity(pairs: list[tuple[str, Any]], where: str) -> Identity:

@@ -47,7 +47,8 @@ def test_bad_rows_say_why(ask_rows, text, fault):
 
 
 BAD_LINES = {
-    "no JSON": ('{"vel": [1, 0, 0}', "is no JSON: "),
+    "no JSON": ('{"vel": [1, 0, 0}', "is no JSON from column 17 on"),
+    "long number": ('{"vel": [1, 0, ' + 9 * "9" * 1000 + "]}", "a number has too many digits"),
     "no object": ("[1, 0, 0]", "is no JSON object"),
     "NaN": ('{"vel": [1, 0, NaN]}', "is no JSON: NaN is no number"),
     "beyond doubles": ('{"vel": [1, 0, 1e999]}', "is not a finite number"),
