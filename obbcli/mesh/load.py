@@ -40,7 +40,7 @@ _GLTF = _Format("glTF", "gltf")
 _VTK = _Format("VTK", "vtk")
 _GMSH = _Format("Gmsh", "gmsh")
 _NASTRAN = _Format("Nastran, OptiStruct", "nastran")
-_MEDIT = _Format("Medit", "cells", "medit")
+_MEDIT = _Format("Medit", "medit")
 _TECPLOT = _Format("Tecplot", "tecplot")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
