@@ -72,7 +72,6 @@ _FORMATS = {
     ".tec": _TECPLOT,
     ".plt": _TECPLOT,
     ".f3grid": _Format("FLAC3D", "cells", "flac3d"),
-    ".mdpa": _Format("MDPA", "cells", "mdpa"),
     ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
 }
 
