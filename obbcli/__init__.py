@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         UnresolvedError,
     )
     from obbcli.mesh import Mesh, load_mesh
+    from obbcli.motion.assembly import Assembly, Part, load_parts
     from obbcli.motion.body import Body
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Accuracy": "accuracy",
+    "Assembly": "motion.assembly",
     "Body": "motion.body",
     "Collision": "answers.collision",
     "Contact": "answers.contact",
@@ -57,6 +59,7 @@ _HOMES = {
     "MotionError": "errors",
     "ObbError": "errors",
     "ObbTree": "tree.tree",
+    "Part": "motion.assembly",
     "Pose": "motion.pose",
     "Query": "questions.first_contact",
     "QueryStats": "answers.counts",
@@ -74,6 +77,7 @@ _HOMES = {
     "distance": "questions.distance",
     "first_contact": "questions.first_contact",
     "load_mesh": "mesh",
+    "load_parts": "motion.assembly",
     "stability": "study.stability.battery",
     "sweep": "sweeps.sweep",
     "tradeoff": "study.tradeoff.tradeoff",
@@ -83,6 +87,7 @@ _HOMES = {
 
 __all__ = [
     "Accuracy",
+    "Assembly",
     "Body",
     "Collision",
     "Contact",
@@ -94,6 +99,7 @@ __all__ = [
     "MotionError",
     "ObbError",
     "ObbTree",
+    "Part",
     "Pose",
     "Query",
     "QueryStats",
@@ -112,6 +118,7 @@ __all__ = [
     "distance",
     "first_contact",
     "load_mesh",
+    "load_parts",
     "primitives",
     "stability",
     "sweep",

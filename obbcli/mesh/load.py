@@ -2,83 +2,45 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
+from obbcli.mesh.formats import FORMATS, known_suffixes
 from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning
-from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import Source, check_file, checked_source, digest_of, read_head, read_source
+from obbcli.mesh.mesh import Mesh, PartRows
+from obbcli.mesh.source import (
+    Source,
+    check_file,
+    checked_source,
+    digest_of,
+    file_and_pattern,
+    read_head,
+    read_source,
+)
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Iterator
 
+    from obbcli.mesh.parts.placed import PlacedPart
     from obbcli.mesh.source import MeshArrays
 
 
-class _Format(NamedTuple):
-    """Holds a format's name and reader.
+class FileParts(NamedTuple):
+    """Holds what a file's parts are made of.
 
-    Args:
-        name: as people call it.
-        module: of this package, imported when first needed, or `cells` for meshio's formats.
-        kind: meshio's module of the format; None where the reader is ours.
+    Attributes:
+        source: the file.
+        parts: in its order.
+        sha256: of its bytes, where it was asked for.
     """
 
-    name: str
-    module: str
-    kind: str | None = None
-
-
-_STL = _Format("STL", "stl")
-_OBJ = _Format("OBJ", "obj")
-_PLY = _Format("PLY", "ply")
-_OFF = _Format("OFF", "off")
-_GLTF = _Format("glTF", "gltf")
-_VTK = _Format("VTK", "vtk")
-_GMSH = _Format("Gmsh", "gmsh")
-_NASTRAN = _Format("Nastran, OptiStruct", "nastran")
-_MEDIT = _Format("Medit", "medit")
-_TECPLOT = _Format("Tecplot", "tecplot")
-
-#: The one table of suffixes. Those of our own readers first, then what goes through meshio.
-_FORMATS = {
-    ".stl": _STL,
-    ".obj": _OBJ,
-    ".ply": _PLY,
-    ".off": _OFF,
-    ".glb": _GLTF,
-    ".gltf": _GLTF,
-    ".vtk": _VTK,
-    ".vtu": _VTK,
-    ".vtp": _VTK,
-    ".vti": _VTK,
-    ".vts": _VTK,
-    ".vtr": _VTK,
-    ".vtm": _VTK,
-    ".msh": _GMSH,
-    ".inp": _Format("Abaqus, CalculiX, AVS UCD", "inp"),
-    ".avs": _Format("AVS UCD", "ucd"),
-    ".bdf": _NASTRAN,
-    ".fem": _NASTRAN,
-    ".nas": _NASTRAN,
-    ".mesh": _MEDIT,
-    ".meshb": _MEDIT,
-    ".vol": _Format("Netgen", "cells", "netgen"),
-    ".su2": _Format("SU2", "su2"),
-    ".dat": _TECPLOT,
-    ".tec": _TECPLOT,
-    ".plt": _TECPLOT,
-    ".f3grid": _Format("FLAC3D", "cells", "flac3d"),
-    ".xml": _Format("DOLFIN XML", "cells", "dolfin"),
-}
-
-
-def known_suffixes() -> tuple[str, ...]:
-    """Return the suffixes that can be read, sorted."""
-    return tuple(sorted(_FORMATS))
+    source: Source
+    parts: list[PlacedPart]
+    sha256: str | None
 
 
 def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
@@ -88,17 +50,22 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     of n corners become n - 2 rows, cells the faces that `cell_surface.surface` lists.
 
     Args:
-        path: the file.
+        path: the file; or `"FILE#PATTERN"`, the parts of it whose paths match, placed and joined.
         hashed: whether the mesh's `sha256` is found, which for a large file costs as much time as
             to read it.
 
     Raises:
-        MeshError: it cannot be read, is not what its name says, or holds no usable surface.
+        MeshError: it cannot be read, is not what its name says, holds no usable surface, or no
+            part matches.
 
     Example:
         >>> load_mesh("sample_meshes/gear.stl")
         Mesh(34560 vertices, 11520 triangles, source='gear.stl')
     """
+    if "#" in os.fspath(path):
+        name, pattern = file_and_pattern(os.fspath(path))
+        if pattern is not None:
+            return load_selection(name, pattern, hashed=hashed)
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)
@@ -106,11 +73,52 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     if suffix == ".stl" and not hashed and path.is_file():
         arrays = _read_binary_stl(path)
         if arrays is not None:
-            return _mesh(arrays, Source(str(path), path.name, b"", path), None)
-    if suffix not in _FORMATS:
+            return mesh_of(arrays, Source(str(path), path.name, b"", path), None)
+    if suffix not in FORMATS:
         # By its beginning alone: a file that is no mesh may be of any size.
         _suffix_told(read_head(path, HEAD_BYTES), suffix)
     return _load(read_source(path), suffix, hashed=hashed)
+
+
+def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool = True) -> Mesh:
+    """Return the parts of a file that a pattern selects as one mesh; its `parts` tell their rows.
+
+    Raises:
+        MeshError: as `load_mesh`.
+    """
+    from obbcli.mesh.parts.placed import joined
+    from obbcli.mesh.parts.selection import selected
+
+    contents = read_parts(path, hashed=hashed)
+    source = contents.source
+    arrays, rows, first = [], [], 0
+    for part in selected(contents.parts, pattern, source.place):
+        arrays.append(part.placed())
+        count = len(arrays[-1][1])
+        rows.append(PartRows(part.path, first, count))
+        first += count
+    return mesh_of(joined(arrays, source), source, contents.sha256, rows)
+
+
+def read_parts(path: str | os.PathLike[str], *, hashed: bool = True) -> FileParts:
+    """Return the parts of a file in its order, not yet decoded where its format allows that.
+
+    A file whose format knows no parts is one part without a name.
+
+    Raises:
+        MeshError: as `load_mesh`.
+    """
+    from obbcli.mesh.parts.selection import listed_parts
+
+    path = Path(path)
+    check_file(path)
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        _suffix_told(read_head(path, HEAD_BYTES), suffix)
+    source = read_source(path)
+    with _reading(source, suffix, hashed=hashed) as (told, digest):
+        parts = listed_parts(_parts_reader(told)(source), source.place)
+    return FileParts(source, parts, None if digest is None else digest())
 
 
 def load_mesh_bytes(
@@ -143,11 +151,11 @@ def _suffix_told(source: Source, suffix: str) -> str:
     """
     found = beginning(source.data)
     if found and found.is_sure:
-        if _FORMATS[found.suffix] != _FORMATS.get(suffix):
+        if FORMATS[found.suffix] != FORMATS.get(suffix):
             source.note(f"is {found.words} by its content, and is read as such")
         return found.suffix
     _refuse_other(source, suffix)
-    if suffix not in _FORMATS:
+    if suffix not in FORMATS:
         known = " ".join(known_suffixes())
         fault = f"unknown mesh suffix '{suffix}'" if suffix else "has no suffix to tell its format"
         raise source.error(fault, f"known are {known}")
@@ -158,14 +166,14 @@ def _refuse_other(source: Source, suffix: str) -> None:
     """Refuse what is no mesh, and say what it is."""
     from obbcli.mesh.formats.not_meshes import not_a_mesh
 
-    other = not_a_mesh(source.data, suffix if suffix in _FORMATS else "")
+    other = not_a_mesh(source.data, suffix if suffix in FORMATS else "")
     if other is not None:
         raise source.error(*other)
 
 
 def _reader(suffix: str) -> Callable[[Source], MeshArrays]:
     """Return the reader of files with a known suffix."""
-    form = _FORMATS[suffix]
+    form = FORMATS[suffix]
     module = import_module(f"obbcli.mesh.formats.{form.module}")
     if form.kind is not None:
         reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix)
@@ -174,30 +182,63 @@ def _reader(suffix: str) -> Callable[[Source], MeshArrays]:
     return reader
 
 
+def _parts_reader(suffix: str) -> Callable[[Source], Iterable[PlacedPart]]:
+    """Return what reads the parts of files with a known suffix."""
+    from obbcli.mesh.parts.placed import whole
+
+    form = FORMATS[suffix]
+    if form.parts is None:
+        read = _reader(suffix)
+        return lambda source: whole(read, source)
+    module = import_module(f"obbcli.mesh.formats.{form.parts}")
+    reader: Callable[[Source], Iterable[PlacedPart]] = getattr(module, f"parts_{form.module}")
+    return reader
+
+
 def _load(source: Source, suffix: str, *, hashed: bool) -> Mesh:
-    read = _reader(_suffix_told(source, suffix))
-    digest = digest_of(source.data) if hashed else None
-    try:
-        vertices, triangles = read(source)
+    with _reading(source, suffix, hashed=hashed) as (told, digest):
+        vertices, triangles = _reader(told)(source)
         if len(triangles) == 0:
             raise source.error("has no faces", "a mesh is a surface of triangles")
+    return mesh_of((vertices, triangles), source, None if digest is None else digest())
+
+
+@contextmanager
+def _reading(
+    source: Source, suffix: str, *, hashed: bool
+) -> Iterator[tuple[str, Callable[[], str] | None]]:
+    """Yield a file's suffix as its content tells it, and what waits for its hash."""
+    told = _suffix_told(source, suffix)
+    digest = digest_of(source.data) if hashed else None
+    try:
+        yield told, digest
     except MeshError as fault:
         raise _with_guess(source, suffix, fault) from fault.__cause__
     except MemoryError as fault:
         raise source.error("does not fit into memory") from fault
     finally:
-        sha256 = None if digest is None else digest()
-    return _mesh((vertices, triangles), source, sha256)
+        if digest is not None:
+            digest()
 
 
-def _mesh(arrays: MeshArrays, source: Source, sha256: str | None) -> Mesh:
+def mesh_of(
+    arrays: MeshArrays, source: Source, sha256: str | None, parts: Iterable[PartRows] = ()
+) -> Mesh:
     """Return the mesh of a file, which errors call by its place."""
     vertices, triangles = arrays
     # Read-only arrays are adopted, not copied.
     vertices.setflags(write=False)
     triangles.setflags(write=False)
     try:
-        return Mesh(vertices, triangles, source.name, sha256, source.notes)
+        return Mesh(
+            vertices,
+            triangles,
+            source.name,
+            sha256,
+            source.notes,
+            unit=source.unit,
+            parts=parts,
+        )
     except MeshError as fault:
         where = fault.where.replace(source.name, source.place, 1)
         raise MeshError(where, fault.fault, fault.remedy) from fault
@@ -216,7 +257,7 @@ def _read_binary_stl(path: Path) -> MeshArrays | None:
 def _with_guess(source: Source, suffix: str, fault: MeshError) -> MeshError:
     """Return the error, with what the file seems to be where that is not what its name says."""
     found = beginning(source.data)
-    if found is None or _FORMATS[found.suffix] == _FORMATS.get(suffix):
+    if found is None or FORMATS[found.suffix] == FORMATS.get(suffix):
         return fault
     looks = f"the file looks like {found.words} ({found.suffix})"
     remedy = f"{looks}; {fault.remedy}" if fault.remedy else looks

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,20 @@ if TYPE_CHECKING:
 MAX_COUNT = 2**31 - 1
 
 
+class PartRows(NamedTuple):
+    """Tells which triangles of a mesh are those of one part of its file.
+
+    Attributes:
+        path: of the part: names from the root down, joined by `/`.
+        first_triangle: the first row.
+        triangle_count: how many rows.
+    """
+
+    path: str
+    first_triangle: int
+    triangle_count: int
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Mesh:
     """Holds a surface: vertices and the triangles between them, checked and read-only.
@@ -34,6 +48,8 @@ class Mesh:
         source: the file's name, or None for a mesh made in code; named in errors.
         sha256: SHA-256 of the file's bytes in hexadecimal, or None.
         notes: what of the file was taken with a change, a sentence each.
+        unit: the length of 1 that the file states (`"m"`, `"mm"`, ...), or None.
+        parts: the parts of the file that were selected, with their rows; empty where all was taken.
 
     Raises:
         MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
@@ -49,6 +65,8 @@ class Mesh:
     source: str | None
     sha256: str | None
     notes: tuple[str, ...]
+    unit: str | None
+    parts: tuple[PartRows, ...]
 
     def __init__(
         self,
@@ -57,6 +75,9 @@ class Mesh:
         source: str | None = None,
         sha256: str | None = None,
         notes: Iterable[str] = (),
+        *,
+        unit: str | None = None,
+        parts: Iterable[PartRows] = (),
     ) -> None:
         prefix = f"{source}: " if source else ""
         checked = _checked_vertices(vertices, prefix)
@@ -67,6 +88,8 @@ class Mesh:
         put(self, "source", source)
         put(self, "sha256", sha256)
         put(self, "notes", tuple(map(_printable, notes)))
+        put(self, "unit", unit)
+        put(self, "parts", tuple(parts))
 
     def __repr__(self) -> str:
         source = f", source={self.source!r}" if self.source else ""

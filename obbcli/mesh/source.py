@@ -6,13 +6,13 @@ import os
 import stat
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from obbcli.errors import MeshError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
@@ -37,6 +37,7 @@ class Source:
         data: the whole file.
         path: where it lies, or None where the bytes came from a stream.
         notes: what readers said of it so far; they become `Mesh.notes`.
+        units: the length unit that the file or its format states, as `Mesh.unit`; empty or one.
     """
 
     place: str
@@ -44,6 +45,16 @@ class Source:
     data: bytes
     path: Path | None = None
     notes: list[str] = field(default_factory=list)
+    units: list[str] = field(default_factory=list)
+
+    @property
+    def unit(self) -> str | None:
+        """The unit of length that is stated, None where none is."""
+        return self.units[0] if self.units else None
+
+    def state_unit(self, unit: str) -> None:
+        """Tell the unit of length that the file or its format states, such as `"mm"`."""
+        self.units[:] = [unit]
 
     def note(self, text: str) -> None:
         """Tell what is taken with a change, such as "12 quads cut into 24 triangles".
@@ -61,6 +72,19 @@ class Source:
             f"{self.place}:{at}" if at.isdigit() else f"{self.place}: {at}" if at else self.place
         )
         return MeshError(where, fault, remedy)
+
+
+def file_and_pattern(name: str) -> tuple[str, str | None]:
+    """Return the file in `FILE#PATTERN`, and the pattern; a file whose own name holds `#` wins."""
+    cut = len(name)
+    while cut > 0:
+        try:
+            if Path(name[:cut]).exists():
+                return name[:cut], None if cut == len(name) else name[cut + 1 :]
+        except (OSError, ValueError):
+            break  # too long for a name, or with a NUL in it: its reader says so
+        cut = name.rfind("#", 0, cut)
+    return name, None
 
 
 def check_file(path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Scenes, queries and results of sweeps: an answer, or an error that the contract names."""
+"""Scenes, queries, results of sweeps, patterns: an answer, or an error of the contract."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from fuzz.kinds import Target, require
 from obbcli import Scene
 from obbcli.cli import main
 from obbcli.errors import ObbError
+from obbcli.mesh.parts.pattern import Pattern, escaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -122,7 +123,30 @@ def _run_results(data: bytes) -> None:
             require((folder / "r.jsonl").read_bytes() == data, "what is refused is left as it was")
 
 
+def _run_pattern(data: bytes) -> None:
+    """Match a path by a pattern, the two being lines; a path that is escaped takes itself."""
+    text, _, path = data.decode("utf-8", "replace").partition("\n")
+    pattern = Pattern(text)
+    if pattern.takes(path):
+        require(pattern.takes(f"{path}/below"), "a match takes the subtree")
+        require(Pattern(f"**/{text}").takes(path), "**/ takes what is at the top as well")
+    require(Pattern(escaped(path)).takes(path), "an escaped path takes itself")
+    require(Pattern("**").takes(path), "** takes everything")
+    require(
+        Pattern(f"**/{text}").takes(path) >= pattern.takes(path), "**/ takes what is at the top"
+    )
+
+
+PATTERNS = [
+    b"arm/**/bolt[1-3!]*\narm/left/hand/bolt2",
+    b"**/**/\\*\\[?\na/b/*[x",
+    b"[!a-c]/[]]/[a\\-z\nd/]/-",
+    b"*a*b*c*/**/*d*\nabcabcabc/x/y/ddd#2",
+]
+
+
 TARGETS = {
+    "part-patterns": Target(lambda: PATTERNS, _run_pattern),
     "scene-toml": Target(lambda: [SCENE_TOML], partial(_run_scene, "s.toml")),
     "scene-json": Target(lambda: [SCENE_JSON], partial(_run_scene, "s.json")),
     "queries-csv": Target(lambda: [QUERIES_CSV], partial(_run_queries, "q.csv")),

@@ -23,7 +23,7 @@ import obbcli
 from obbcli import primitives
 from obbcli.cli.app import app
 from obbcli.cli.boundary import ExitCode
-from obbcli.mesh.load import _FORMATS
+from obbcli.mesh.formats import FORMATS
 from obbcli.tree import header
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ def test_format_table_is_the_loader_s() -> None:
 
     assert shown == {
         suffix: (form.name, "meshio" if form.kind else "VTK" if form.module == "vtk" else "obbtree")
-        for suffix, form in _FORMATS.items()
+        for suffix, form in FORMATS.items()
     }
 
 

@@ -8,30 +8,23 @@ surface is read: positions, indices, morph targets, skins and the nodes that pla
 from __future__ import annotations
 
 import json
-import os
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
 
 from obbcli.mesh.formats.gltf_buffers import split_glb
 from obbcli.mesh.formats.gltf_data import Document
 from obbcli.mesh.formats.gltf_extensions import check_extensions
 from obbcli.mesh.formats.gltf_json import NotAsExpectedError, words_of
-from obbcli.mesh.formats.gltf_nodes import Nodes, ShownNode, instances, mirrors, transformed
-from obbcli.mesh.formats.gltf_primitives import Primitive, primitives, weights_of
-from obbcli.mesh.formats.gltf_skins import joint_matrices, skinned
+from obbcli.mesh.formats.gltf_parts import parts_of
+from obbcli.mesh.parts.placed import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
     from obbcli.mesh.formats.gltf_json import Json
+    from obbcli.mesh.parts.placed import PlacedPart
     from obbcli.mesh.source import MeshArrays, Source
-
-#: Instances multiply what a file holds: they may fill this share of the machine's memory.
-_SHARE = 4
-_NO_NUMBERS = np.zeros(0)
 
 
 def read_gltf(source: Source) -> MeshArrays:
@@ -47,17 +40,47 @@ def read_gltf(source: Source) -> MeshArrays:
         MeshError: not JSON, another version, lengths that do not fit, values out of place, a
             required extension that is not read, compressed geometry whose package is missing.
     """
-    text, chunk = split_glb(source)
-    content = _parsed(source, text)
+    with _naming(source):
+        parts = parts_of(_document(source))
+        return joined((part.placed() for part in parts), source, "nodes")
+
+
+def parts_gltf(source: Source) -> Iterator[PlacedPart]:
+    """Yield the document's parts: what each of its scene's nodes shows, in `read_gltf`'s order.
+
+    Raises:
+        MeshError: as `read_gltf`; what is wrong with a part's own values, when it is decoded.
+    """
+    with _naming(source):
+        for part in parts_of(_document(source)):
+            yield part._replace(decode=partial(_decoded, source, part))
+
+
+def _decoded(source: Source, part: PlacedPart) -> MeshArrays:
+    with _naming(source):
+        return part.decode()
+
+
+@contextmanager
+def _naming(source: Source) -> Iterator[None]:
+    """Let errors name the file."""
     try:
-        _check_version(content)
-        document = Document(source, content, chunk)
-        check_extensions(document)
-        if document.items("animations"):
-            source.note("animations are not played")
-        return _joined(_parts(document))
+        yield
     except NotAsExpectedError as fault:
         raise source.error(fault.fault, fault.remedy, at=fault.place) from fault
+
+
+def _document(source: Source) -> Document:
+    """Return the document, of a version and with extensions that are read."""
+    source.state_unit("m")  # glTF 2.0, 3.4
+    text, chunk = split_glb(source)
+    content = _parsed(source, text)
+    _check_version(content)
+    document = Document(source, content, chunk)
+    check_extensions(document)
+    if document.items("animations"):
+        source.note("animations are not played")
+    return document
 
 
 def _parsed(source: Source, text: bytes) -> Json:
@@ -101,68 +124,3 @@ def _check_version(content: Json) -> None:
     if least != "2.0":
         fault = f"needs a reader of glTF {words_of(least)}, this one reads 2.0"
         raise NotAsExpectedError("asset.minVersion", fault, "export it as glTF 2.0")
-
-
-def _parts(document: Document) -> Iterator[MeshArrays]:
-    """Yield the primitives of every node of the scene, placed."""
-    nodes = Nodes(document)
-    meshes = len(document.items("meshes"))
-    if not document.items("scenes") and not document.items("nodes"):
-        document.source.note("has no nodes: its meshes are taken where they were modelled")
-        for mesh in range(meshes):
-            for part in primitives(document, mesh, _NO_NUMBERS):
-                yield part.vertices, part.triangles
-        return
-    known: dict[Any, list[Primitive]] = {}
-    placed = set()
-    for node in nodes.shown():
-        if "mesh" not in node.item:
-            continue
-        weights = weights_of(document, node.item, f"nodes[{node.number}]")
-        mesh = node.item["mesh"]
-        placed.add(mesh)
-        key = (mesh, *weights.tolist())
-        if key not in known:
-            known[key] = primitives(document, mesh, weights)
-        yield from _placed(document, nodes, node, known[key])
-    if len(placed) < meshes:
-        left = meshes - len(placed)
-        document.source.note(f"{left} of {meshes} meshes stand in no node of the scene")
-
-
-def _placed(
-    document: Document, nodes: Nodes, node: ShownNode, parts: list[Primitive]
-) -> Iterator[MeshArrays]:
-    """Yield the primitives of a node's mesh, once for each instance of it."""
-    places = instances(document, node)
-    if "skin" not in node.item:
-        for matrix in places:
-            for part in parts:
-                turned = part.triangles[:, ::-1] if mirrors(matrix) else part.triangles
-                yield transformed(part.vertices, matrix), turned
-        return
-    if len(places) != 1 or places[0] is not node.matrix:
-        raise NotAsExpectedError(
-            f"nodes[{node.number}]", "has a skin and instances, which glTF does not define together"
-        )
-    matrices = joint_matrices(document, nodes, node.item["skin"])
-    for part in parts:
-        yield skinned(document, part, matrices), part.triangles
-
-
-def _joined(parts: Iterator[MeshArrays]) -> MeshArrays:
-    """Return all parts as one."""
-    room = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // _SHARE
-    vertices: list[NDArray[np.float64]] = [np.zeros((0, 3))]
-    triangles: list[NDArray[Any]] = [np.zeros((0, 3), dtype=np.int64)]
-    start = 0
-    for points, rows in parts:
-        vertices.append(points)
-        triangles.append(rows + start)
-        start += len(points)
-        room -= 2 * (points.nbytes + rows.nbytes)
-        if room < 0:
-            raise NotAsExpectedError(
-                "nodes", "place more than a quarter of this machine's memory", "split the model"
-            )
-    return np.vstack(vertices), np.vstack(triangles)

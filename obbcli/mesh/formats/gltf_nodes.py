@@ -96,6 +96,10 @@ class Nodes:
             pending += reversed(list_in(node, "children", f"nodes[{index}]"))
             yield ShownNode(index, node, self.world(index))
 
+    def parent(self, index: int) -> int | None:
+        """Return the node that a node is a child of, None for a root."""
+        return self._parents.get(index)
+
     def _roots(self) -> list[int]:
         """Return the roots of the scene that counts."""
         document = self._document
@@ -221,24 +225,3 @@ def composed(outer: Matrix, inner: Matrix) -> Matrix:
     with np.errstate(over="ignore", invalid="ignore"):
         terms = outer[:, :, np.newaxis] * inner[np.newaxis, :, :]
         return np.asarray(((terms[:, 0] + terms[:, 1]) + terms[:, 2]) + terms[:, 3])
-
-
-def transformed(vertices: NDArray[np.float64], matrix: Matrix) -> NDArray[np.float64]:
-    """Return points (V, 3) placed by a matrix, sums from the left."""
-    if matrix is None:
-        return vertices
-    with np.errstate(over="ignore", invalid="ignore"):
-        x, y, z = vertices.T
-        rows = [
-            ((matrix[k, 0] * x + matrix[k, 1] * y) + matrix[k, 2] * z) + matrix[k, 3]
-            for k in range(3)
-        ]
-    return np.stack(rows, axis=1)
-
-
-def mirrors(matrix: Matrix) -> bool:
-    """Return whether a matrix turns the inside of a surface out."""
-    if matrix is None:
-        return False
-    with np.errstate(over="ignore", invalid="ignore"):
-        return float(matrix[0, :3] @ np.cross(matrix[1, :3], matrix[2, :3])) < 0

@@ -118,6 +118,22 @@ def primitives(document: Document, index: object, weights: NDArray[np.float64]) 
     Raises:
         NotAsExpectedError: values out of place, with the primitive.
     """
+    return [
+        _primitive(document, item, weights, place) for place, item in _surfaces(document, index)
+    ]
+
+
+def has_surface(document: Document, index: object) -> bool:
+    """Return whether any primitive of a mesh has a surface; none is decoded.
+
+    Raises:
+        NotAsExpectedError: a primitive is none.
+    """
+    return bool(_surfaces(document, index))
+
+
+def _surfaces(document: Document, index: object) -> list[tuple[str, Json]]:
+    """Return the primitives of a mesh that have a surface, with their places."""
     mesh = document.item("meshes", index)
     found = []
     for number, item in enumerate(list_in(mesh, "primitives", f"meshes[{index}]")):
@@ -128,7 +144,7 @@ def primitives(document: Document, index: object, weights: NDArray[np.float64]) 
         if not is_count(mode) or mode > _FAN:
             raise NotAsExpectedError(place, f"has the unknown mode {words_of(mode)}")
         if mode not in _WITHOUT_SURFACE:
-            found.append(_primitive(document, item, weights, place))
+            found.append((place, item))
     return found
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.formats.obj_statements import PASSED_OVER, OtherLines, is_passed_over
+from obbcli.mesh.formats.obj_statements import PASSED_OVER, OtherLines, is_passed_over, statements
 from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import (
     all_numbers,
@@ -23,8 +23,6 @@ from obbcli.mesh.formats.text import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from obbcli.errors import MeshError
     from obbcli.mesh.source import MeshArrays, Source
 
@@ -92,7 +90,7 @@ def _read_statements(source: Source) -> MeshArrays:
     counts: list[int] = []
     others = OtherLines(source)
     opens = True
-    for line, words in _statements(source.data):
+    for line, words in statements(source.data):
         keyword = words[0]
         if keyword == b"v":
             coordinates += _vertex(source, words, line)
@@ -129,26 +127,6 @@ def _vertex(source: Source, words: list[bytes], line: int) -> tuple[float, float
     return x, y, z
 
 
-def _statements(data: bytes) -> Iterator[tuple[int, list[bytes]]]:
-    """Yield line number and words of each statement, comments cut and continued lines joined."""
-    held: list[bytes] = []
-    first = 0
-    for line, content in enumerate(strip_mark(data).splitlines(), start=1):
-        if b"#" in content:
-            content = content[: content.index(b"#")]
-        words = content.split()
-        if words and words[-1].endswith(b"\\"):
-            first = first or line
-            held += [*words[:-1], words[-1][:-1]] if words[-1] != b"\\" else words[:-1]
-            continue
-        if held:
-            words, held, line, first = held + words, [], first, 0
-        if words:
-            yield line, words
-    if held:
-        yield first, held
-
-
 def _index(source: Source, word: bytes, line: int, count: int) -> int:
     """Return the 0-based vertex that a face's word names; later vertices are checked at the end."""
     part = word.partition(b"/")[0]
@@ -173,7 +151,7 @@ def _out_of_range(source: Source, count: int) -> MeshError:
     """Return the error of the first face that uses a vertex the file does not have."""
     line, worst = next(
         (line, worst)
-        for line, words in _statements(source.data)
+        for line, words in statements(source.data)
         if words[0] in (b"f", b"fo")
         and (worst := max(int(word.partition(b"/")[0]) for word in words[1:])) > count
     )

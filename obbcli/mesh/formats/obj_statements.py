@@ -10,9 +10,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from obbcli.mesh.formats.text import counted, shown
+from obbcli.mesh.formats.text import counted, shown, strip_mark
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from obbcli.errors import MeshError
     from obbcli.mesh.source import Source
 
@@ -44,6 +46,26 @@ _ENOUGH = 3
 def is_passed_over(keyword: bytes) -> bool:
     """Return whether a statement places no polygon."""
     return keyword in PASSED_OVER or keyword.startswith(_MAPS)
+
+
+def statements(data: bytes) -> Iterator[tuple[int, list[bytes]]]:
+    """Yield line number and words of each statement, comments cut and continued lines joined."""
+    held: list[bytes] = []
+    first = 0
+    for line, content in enumerate(strip_mark(data).splitlines(), start=1):
+        if b"#" in content:
+            content = content[: content.index(b"#")]
+        words = content.split()
+        if words and words[-1].endswith(b"\\"):
+            first = first or line
+            held += [*words[:-1], words[-1][:-1]] if words[-1] != b"\\" else words[:-1]
+            continue
+        if held:
+            words, held, line, first = held + words, [], first, 0
+        if words:
+            yield line, words
+    if held:
+        yield first, held
 
 
 class OtherLines:

@@ -37,7 +37,7 @@ _FACET: tuple[bytes | None, ...] = (
 #: Where in a facet the corners' numbers stand; the normal's are never used and may be anything.
 _COORDINATES = [k for k, word in enumerate(_FACET) if word is None and k > 4]
 #: Begins with letters, which `re` looks for many times as fast as for line starts.
-_TITLE = rb"solid(?![^\s])[^\r\n]*"
+TITLE = rb"solid(?![^\s])[^\r\n]*"
 _STARTS_SOLID = rb"(?i)\s*solid\b"
 #: Lines that say nothing of the shape: comments, and the colours that some exporters write.
 _REMARK = rb"(?i)(?:(?<=[\r\n])|\A)[ \t]*(?:#|;|//|colou?r\b)[^\r\n]*"
@@ -61,7 +61,7 @@ def read_stl(source: Source) -> MeshArrays:
         raise _not_binary(source)
     if re.match(_STARTS_SOLID, text):
         return _read_ascii(source, text)
-    plain = _without_remarks(text)
+    plain = without_remarks(text)
     if re.match(_STARTS_SOLID, plain):
         return _read_ascii(source, plain)
     raise _no_solid(source, plain)
@@ -151,7 +151,7 @@ def _no_solid(source: Source, text: bytes) -> Exception:
     return source.error("holds comments alone, expected 'solid'", "export it again")
 
 
-def _without_remarks(text: bytes) -> bytes:
+def without_remarks(text: bytes) -> bytes:
     """Return text without comments and colours, closing words as one; lines keep their numbers."""
     return re.sub(_CLOSING, rb"end\1", re.sub(_REMARK, b"", text))
 
@@ -160,7 +160,7 @@ def _read_ascii(source: Source, text: bytes) -> MeshArrays:
     """Return the facets of all solids: by whole columns where all is regular, else word by word."""
     vertices = _read_regular(text)
     if vertices is None:
-        plain = _without_remarks(text)
+        plain = without_remarks(text)
         vertices = None if plain == text else _read_regular(plain)
         if vertices is None:
             vertices = _read_words(source, plain)
@@ -190,7 +190,7 @@ def _without_titles(text: bytes) -> bytes | None:
     pieces = []
     position = 0
     word = b""
-    for match in re.finditer(_TITLE, text):
+    for match in re.finditer(TITLE, text):
         start = match.start()
         ends = text[start - 3 : start] == b"end"
         start -= 3 * ends

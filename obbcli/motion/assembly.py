@@ -1,0 +1,236 @@
+"""`load_parts`: the parts of a mesh file, each with its path, its mesh and its place."""
+
+from __future__ import annotations
+
+import os
+from threading import RLock
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from obbcli.errors import MotionError
+from obbcli.mesh.load import mesh_of, read_parts
+from obbcli.mesh.parts.placed import placed
+from obbcli.mesh.parts.selection import selected
+from obbcli.mesh.source import file_and_pattern
+from obbcli.motion.pose import Pose
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    from obbcli.mesh.load import FileParts
+    from obbcli.mesh.mesh import Mesh
+    from obbcli.mesh.parts.placed import PlacedPart
+
+
+class LazyMesh:
+    """A mesh that is decoded when it is first asked for; the parts of one shape share it.
+
+    Args:
+        decode: returns the mesh.
+    """
+
+    def __init__(self, decode: Callable[[], Mesh]) -> None:
+        self._decode: Callable[[], Mesh] | None = decode
+        self._mesh: Mesh | None = None
+        self._lock = RLock()
+
+    @property
+    def is_decoded(self) -> bool:
+        """Whether the mesh was asked for."""
+        return self._mesh is not None
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh.
+
+        Raises:
+            MeshError: it is damaged.
+        """
+        with self._lock:
+            if self._mesh is None:
+                assert self._decode is not None
+                self._mesh, self._decode = self._decode(), None
+            return self._mesh
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lower and upper corner of the mesh, (2, 3)."""
+        return self.mesh.bounds
+
+    @property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """Area-weighted centroid of the mesh, (3,)."""
+        return self.mesh.surface_centroid
+
+
+class Part:
+    """One part of a file: a named mesh and where it stands.
+
+    Args:
+        path: the names from the root down, joined by `/`; empty where the file gives no name.
+        mesh: in the part's own coordinates; other parts may share it.
+        pose: from there to the file's world.
+        unit: the length of 1 that the file states, such as `"m"`; None where it states none.
+
+    Attributes:
+        path: as given.
+        pose: as given.
+        unit: as given.
+        shape: what parts of one mesh have in common; a `Body` is made of it, and then decodes the
+            mesh no sooner than a question needs it.
+    """
+
+    def __init__(
+        self, path: str, mesh: Mesh | LazyMesh, pose: Pose | None = None, unit: str | None = None
+    ) -> None:
+        self.path = path
+        self.pose = Pose() if pose is None else pose
+        self.unit = unit
+        self.shape = mesh
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh, decoded when first asked for.
+
+        Raises:
+            MeshError: the part is damaged.
+        """
+        return self.shape.mesh if isinstance(self.shape, LazyMesh) else self.shape
+
+    @property
+    def is_decoded(self) -> bool:
+        """Whether the mesh was read from the file's bytes."""
+        return not isinstance(self.shape, LazyMesh) or self.shape.is_decoded
+
+    def vertices(self) -> NDArray[np.float64]:
+        """Return the mesh's vertices in the file's world, (V, 3), rounded as queries round them."""
+        return self.pose.apply(self.mesh.vertices)
+
+    def __repr__(self) -> str:
+        return f"Part({self.path!r}, {self.pose!r}, unit={self.unit!r})"
+
+
+class Assembly:
+    """The parts of a file, in its order.
+
+    Args:
+        parts: the parts; no two have one path.
+        source: the file's name, or None.
+    """
+
+    def __init__(self, parts: Iterable[Part], source: str | None = None) -> None:
+        self.parts = tuple(parts)
+        self.source = source
+
+    def __iter__(self) -> Iterator[Part]:
+        return iter(self.parts)
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    def __getitem__(self, path: str) -> Part:
+        """Return the part with exactly this path.
+
+        Raises:
+            KeyError: there is none.
+        """
+        for part in self.parts:
+            if part.path == path:
+                return part
+        raise KeyError(path)
+
+    def select(self, pattern: str) -> Assembly:
+        """Return the parts that a pattern takes: shell wildcards over whole path elements.
+
+        Raises:
+            MeshError: it takes none; the nearest names are told.
+        """
+        return Assembly(selected(self.parts, pattern, self.source or "assembly"), self.source)
+
+    def __repr__(self) -> str:
+        return f"Assembly({len(self.parts)} parts, source={self.source!r})"
+
+
+def load_parts(path: str | os.PathLike[str]) -> Assembly:
+    """Return the parts of a mesh file; what they hold is decoded when it is asked for.
+
+    Nodes of glTF, `o` of OBJ (`g` where no `o` stands) and solids of an ASCII STL are parts; any
+    other file is one, whose path is empty. Parts that are placed copies of one mesh share it. A
+    pose turns and shifts alone: what a file mirrors or scales has a mesh of its own, in which that
+    is done. All parts, placed and joined, are what `load_mesh` returns, row for row and bit by bit.
+
+    Args:
+        path: the file, or `"FILE#PATTERN"`.
+
+    Raises:
+        MeshError: the file cannot be read or is refused, or no part matches.
+
+    Example:
+        >>> assembly = load_parts("sample_meshes/nut.obj")
+        >>> [part.path for part in assembly], len(assembly.parts[0].mesh.triangles)
+        (['nut'], 3896)
+    """
+    name, pattern = file_and_pattern(os.fspath(path))
+    contents = read_parts(name)
+    parts = contents.parts
+    if pattern is not None:
+        parts = selected(parts, pattern, contents.source.place)
+    maker = _Maker(contents)
+    return Assembly([maker.part(part) for part in parts], contents.source.name)
+
+
+class _Maker:
+    """Makes parts of what a reader told; those of one shape share a mesh.
+
+    Args:
+        contents: the file.
+    """
+
+    def __init__(self, contents: FileParts) -> None:
+        self._contents = contents
+        self._notes = tuple(contents.source.notes)
+        self._shapes: dict[Hashable, LazyMesh] = {}
+        self._lock = RLock()
+
+    def part(self, told: PlacedPart) -> Part:
+        """Return a part."""
+        pose, linear = _pose_and_rest(told.matrix)
+        key = (told.key, None if linear is None else linear.tobytes())
+        if key not in self._shapes:
+            self._shapes[key] = LazyMesh(lambda: self._mesh(told, linear))
+        return Part(told.path, self._shapes[key], pose, self._contents.source.unit)
+
+    def _mesh(self, told: PlacedPart, linear: NDArray[np.float64] | None) -> Mesh:
+        """Return a part's mesh, with the notes on the file and on this part."""
+        source = self._contents.source
+        with self._lock:
+            source.notes[:] = self._notes
+            arrays = placed(told.decode(), linear)
+            if not len(arrays[1]):
+                raise source.error("has no faces", "leave it out", at=f"part '{told.path}'")
+            return mesh_of(arrays, source, self._contents.sha256)
+
+
+def _pose_and_rest(
+    matrix: NDArray[np.float64] | None,
+) -> tuple[Pose, NDArray[np.float64] | None]:
+    """Return a matrix as a pose after what no pose can do, (4, 4), None where a pose does it all.
+
+    The rest is the linear part, so that nodes that differ by a shift share a mesh. Coordinates are
+    rounded as by the matrix itself: sums run from the left, and the shift comes last in both.
+    """
+    if matrix is None:
+        return Pose(), None
+    try:
+        return Pose(matrix[:3, :3], matrix[:3, 3]), None
+    except MotionError:
+        linear = np.array(matrix)
+    try:
+        pose = Pose(translation=matrix[:3, 3])
+    except MotionError:  # not finite: the mesh is refused, with the vertex
+        return Pose(), linear
+    linear[:3, 3] = 0.0
+    return pose, linear
