@@ -21,7 +21,7 @@ from obbcli.tree.options import BuildOptions
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from obbcli.tree.file import TreeArrays
+    from obbcli.tree.whole import TreeArrays
 
 FITS = ("triangles", "points", "hull", "min-volume", "axis-aligned")
 SPLITS = ("median", "center", "compact")

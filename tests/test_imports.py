@@ -132,6 +132,7 @@ NEEDED = {
     "obbcli.tree.header",
     "obbcli.tree.options",
     "obbcli.tree.tree",
+    "obbcli.tree.whole",
     "obbcli.version",
 }
 # And of the standard library, beside what click and NumPy load: small modules, pathlib with its

@@ -12,9 +12,10 @@ from tree_meshes import bumpy_grid, needles, soup
 from tree_oracles import NODE
 
 from obbcli import Body, Mesh, ObbTree, TreeFileError
+from obbcli.tree.whole import WholeTree
 
 if TYPE_CHECKING:
-    from obbcli.tree.file import TreeArrays
+    from obbcli.tree.whole import TreeArrays
 from tree_changes import _aligned, arrays_of, as_read, inner_slot, refuses, set_field, with_nodes
 
 
@@ -82,7 +83,7 @@ def _with_value(arrays: TreeArrays, name: str, place: Any, value: float) -> Tree
 def test_damaged_tree_gives_no_mesh(name: str, place: Any, value: Any, fault: str) -> None:
     arrays = arrays_of(soup(40))
     value = arrays.triangle_ids[7] if value is None else value
-    tree = ObbTree(_with_value(arrays, name, place, value))
+    tree = ObbTree(WholeTree(_with_value(arrays, name, place, value)))
 
     for figure in ("mesh", "bounds", "size", "surface_centroid"):
         with pytest.raises(TreeFileError, match=fault):
@@ -90,7 +91,7 @@ def test_damaged_tree_gives_no_mesh(name: str, place: Any, value: Any, fault: st
 
 
 def test_body_of_a_tree_asks_it_for_no_mesh() -> None:
-    tree = ObbTree(_with_value(arrays_of(soup(40)), "triangle_ids", 3, 40))
+    tree = ObbTree(WholeTree(_with_value(arrays_of(soup(40)), "triangle_ids", 3, 40)))
 
     assert Body(tree).shape is tree
 
@@ -226,11 +227,11 @@ def test_check_refuses_another_scale(exponent: int) -> None:
 def test_tree_refuses_arrays_that_do_not_belong_together() -> None:
     arrays = arrays_of(soup(10))
     with pytest.raises(TreeFileError, match="do not belong together"):
-        ObbTree(replace(arrays, triangle_ids=arrays.triangle_ids[:-1]))
+        ObbTree(WholeTree(replace(arrays, triangle_ids=arrays.triangle_ids[:-1])))
     with pytest.raises(TreeFileError, match="do not belong together"):
-        ObbTree(replace(arrays, nodes=_aligned(np.repeat(arrays.nodes, 2, axis=0))))
+        ObbTree(WholeTree(replace(arrays, nodes=_aligned(np.repeat(arrays.nodes, 2, axis=0)))))
     with pytest.raises(TreeFileError, match="do not belong together"):
-        ObbTree(replace(arrays, nodes=arrays.nodes[:0]))
+        ObbTree(WholeTree(replace(arrays, nodes=arrays.nodes[:0])))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -246,7 +247,7 @@ def test_check_never_passes_what_exact_arithmetic_refuses(seed: int) -> None:
         flat[random.integers(flat.size)] ^= 1 << int(random.integers(8))
         damaged = replace(arrays, nodes=nodes)
         try:
-            ObbTree(damaged).check()
+            ObbTree(WholeTree(damaged)).check()
         except TreeFileError:
             refused += 1
         else:

@@ -15,6 +15,7 @@ from tree_meshes import bumpy_grid, soup
 from tree_oracles import FIXED
 
 from obbcli import Mesh, ObbTree, TreeFileError
+from obbcli.tree.whole import WholeTree
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -198,7 +199,9 @@ def test_treefile_rejects_a_description_that_no_build_has(
     (name,) = changes
     path = tmp_path / "forged.obbt"
     arrays = ObbTree.build(Mesh(*soup(3)))._arrays
-    ObbTree(replace(arrays, description=replace(arrays.description, **changes))).save(path)
+    ObbTree(WholeTree(replace(arrays, description=replace(arrays.description, **changes)))).save(
+        path
+    )
 
     for verify in (True, False):
         with pytest.raises(TreeFileError, match=f"says that {name} is "):

@@ -11,13 +11,14 @@ import tree_oracles
 from tree_oracles import NODE
 
 from obbcli import Mesh, ObbTree, TreeFileError
+from obbcli.tree.whole import WholeTree
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from obbcli.tree.file import TreeArrays
+    from obbcli.tree.whole import TreeArrays
 
 
 def arrays_of(surface: Any, **options: Any) -> TreeArrays:
@@ -56,7 +57,7 @@ def as_read(arrays: TreeArrays) -> tree_oracles.TreeFile:
 
 def refuses(arrays: TreeArrays, match: str) -> None:
     with pytest.raises(TreeFileError, match=match):
-        ObbTree(arrays).check()
+        ObbTree(WholeTree(arrays)).check()
 
 
 def set_field(name: str, slot: int, value: Any) -> Callable[[Any], None]:

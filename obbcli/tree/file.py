@@ -6,7 +6,6 @@ zeros to a multiple of 64, laid out as the kernels use them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,36 +21,14 @@ from obbcli.tree.header import (
     pack_header,
     round_up,
 )
+from obbcli.tree.whole import TreeArrays
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import NDArray
 
-    from obbcli.tree.header import Description, Header, Surface
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class TreeArrays:
-    """A tree as plain arrays, all read-only.
-
-    Attributes:
-        nodes: uint8 (N, 64), boxes in depth-first order (`kernels/tree/node.hpp`), aligned to 64.
-        corners: uint32 (F, 3), vertices of the triangles in tree order.
-        triangle_ids: uint32 (F,), their rows in the mesh file.
-        vertices: float64 (V, 3), mesh units.
-        scale_exponent: boxes are in mesh units times 2 to the minus this.
-        description: how the tree was made.
-        surface: of the mesh as a whole, as a file says it; None where it is for the mesh to say.
-    """
-
-    nodes: NDArray[np.uint8]
-    corners: NDArray[np.uint32]
-    triangle_ids: NDArray[np.uint32]
-    vertices: NDArray[np.float64]
-    scale_exponent: int
-    description: Description
-    surface: Surface | None = None
+    from obbcli.tree.header import Header, Surface
 
 
 def write_tree(path: str | os.PathLike[str], arrays: TreeArrays, surface: Surface) -> int:

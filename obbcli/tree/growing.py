@@ -11,13 +11,15 @@ import numpy as np
 from obbcli import kernels
 from obbcli.errors import MeshError
 from obbcli.threads import thread_count
-from obbcli.tree.file import TreeArrays
 from obbcli.tree.header import Description
 from obbcli.tree.options import kernel_limits
+from obbcli.tree.whole import TreeArrays, TreeInMemory
 from obbcli.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from obbcli.mesh import Mesh
     from obbcli.tree.options import BuildOptions
@@ -31,7 +33,7 @@ _BUILD_BYTES_A_TRIANGLE = 200
 _HULL_BYTES_A_TRIANGLE = 200
 
 
-class Growth:
+class Growth(TreeInMemory):
     """A tree in the making. Safe to share between threads; whoever asks first makes a node.
 
     Args:
@@ -58,7 +60,7 @@ class Growth:
     ) -> None:
         options = options.checked()
         _check_memory(mesh, options, max_memory)
-        self.mesh = mesh
+        self._mesh = mesh
         self._threads = thread_count(threads)
         self._needs_hulls = options.needs_hulls
         self.description = Description(
@@ -100,7 +102,7 @@ class Growth:
                 nodes=nodes,
                 corners=corners,
                 triangle_ids=triangle_ids,
-                vertices=self.mesh.vertices,
+                vertices=self._mesh.vertices,
                 scale_exponent=self._builder.scale_exponent,
                 description=self.description,
             )
@@ -108,14 +110,29 @@ class Growth:
             return self._arrays
 
     @property
+    def mesh(self) -> Mesh:
+        """The mesh that the tree is over."""
+        return self._mesh
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices of the mesh, (V, 3), read-only."""
+        return self._mesh.vertices
+
+    @property
+    def surface(self) -> None:
+        """No file says anything of the mesh as a whole: it is at hand."""
+        return
+
+    @property
     def triangle_count(self) -> int:
         """How many triangles the mesh has."""
-        return len(self.mesh.triangles)
+        return len(self._mesh.triangles)
 
     @property
     def vertex_count(self) -> int:
         """How many vertices the mesh has."""
-        return len(self.mesh.vertices)
+        return len(self._mesh.vertices)
 
     @property
     def node_count(self) -> int:
@@ -125,7 +142,7 @@ class Growth:
     @property
     def nbytes(self) -> int:
         """Bytes of the tree as far as it is made, its triangles and vertices among them."""
-        return self._builder.byte_count + self.mesh.vertices.nbytes
+        return self._builder.byte_count + self._mesh.vertices.nbytes
 
 
 def _kernel_name(word: str) -> str:

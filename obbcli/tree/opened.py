@@ -12,13 +12,15 @@ import numpy as np
 
 from obbcli import kernels
 from obbcli.errors import TreeFileError
-from obbcli.tree.file import TreeArrays
 from obbcli.tree.header import read_header
+from obbcli.tree.whole import TreeArrays, mesh_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
+
+    from obbcli.mesh import Mesh
 
 
 class OpenedTree:
@@ -38,6 +40,7 @@ class OpenedTree:
 
     def __init__(self, path: str | os.PathLike[str], *, verify: bool = True) -> None:
         self._name = os.fspath(path)
+        self.place = str(Path(path))
         with Path(path).open("rb") as file:
             header = read_header(file, self._name)
             self.description = header.description
@@ -77,6 +80,30 @@ class OpenedTree:
             surface=self.surface,
         )
 
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh, its triangles in file order.
+
+        Raises:
+            TreeFileError: as `arrays`, or the triangles make no mesh.
+        """
+        return mesh_of(self.arrays(), self.place)
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices as the mesh has them, (V, 3), read-only."""
+        return self.arrays().vertices
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """Corners of the mesh's axis-aligned box, (2, 3), as the header says."""
+        return _read_only(self.surface.bounds)
+
+    @cached_property
+    def surface_centroid(self) -> NDArray[np.float64]:
+        """Area-weighted centroid of the surface, (3,), as the header says."""
+        return _read_only(self.surface.surface_centroid)
+
     def triangle(self, row: int) -> NDArray[np.float64]:
         """Return the corners of one triangle, (3, 3); `row` counts as in the mesh file.
 
@@ -109,9 +136,9 @@ class OpenedTree:
         return self._file.loaded_counts()
 
     @property
-    def fault(self) -> str:
-        """What was found wrong last; empty where nothing was."""
-        return self._file.fault
+    def fault(self) -> str | None:
+        """What was found wrong last; None where nothing was."""
+        return self._file.fault or None
 
     @contextmanager
     def _named_faults(self) -> Iterator[None]:
@@ -122,3 +149,9 @@ class OpenedTree:
 
     def _damaged(self, fault: str) -> TreeFileError:
         return TreeFileError(self._name, fault, "build it again from the mesh")
+
+
+def _read_only(values: tuple[object, ...]) -> NDArray[np.float64]:
+    array = np.array(values, np.float64)
+    array.setflags(write=False)
+    return array

@@ -12,6 +12,7 @@ from obbcli.tree import header as treeheader
 from obbcli.tree.facts import TreeFacts
 from obbcli.tree.growing import Growth
 from obbcli.tree.options import DEFAULT_BUILD, BuildOptions, kernel_limits
+from obbcli.tree.whole import WholeTree, kernel_of
 
 if TYPE_CHECKING:
     import os
@@ -76,7 +77,7 @@ class ObbTree(TreeFacts):
         mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
         options = BuildOptions(fit, split, leaf_size, max_depth)
         growth = Growth(mesh, options, max_memory, on_demand=lazy)
-        return cls(growth if lazy else growth.arrays(progress))
+        return cls(growth if lazy else WholeTree(growth.arrays(progress)))
 
     @classmethod
     def open(cls, path: str | os.PathLike[str], verify: bool = True) -> ObbTree:
@@ -109,7 +110,7 @@ class ObbTree(TreeFacts):
         Raises:
             TreeFileError: as `open`.
         """
-        return cls(treefile.parse_tree(data, name, verify=verify))
+        return cls(WholeTree(treefile.parse_tree(data, name, verify=verify)))
 
     def save(self, path: str | os.PathLike[str]) -> int:
         """Write the tree to a file, whole or not at all, and return the file's size in bytes.
@@ -147,7 +148,7 @@ class ObbTree(TreeFacts):
 
             OpenedTree(self._path).arrays()
         limits = kernel_limits(self.leaf_size, self.max_depth)
-        fault = self._kernel_of(self._arrays).check(*limits)
+        fault = kernel_of(self._arrays, self.place).check(*limits)
         if fault is None and self._surface not in (None, treeheader.Surface.of(self.mesh)):
             fault = "the surface has other bounds or another centroid than the header says"
         if fault is not None:

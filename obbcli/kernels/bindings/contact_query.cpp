@@ -22,7 +22,10 @@ using Triple = std::array<double, 3>;
 obb::Vec3 vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 
 std::tuple<double, double, double> as_python(obb::Vec3 v) { return {v.x, v.y, v.z}; }
-int as_python(obb::FeatureCode code) { return code; }
+template <typename Number>
+Number as_python(Number number) {
+    return number;
+}
 
 } // namespace
 
