@@ -317,7 +317,7 @@ export NEEDS
 	  chmod +x "$(BIN)/zig-$$tool"; \
 	done; \
 	echo 'PATH="$$PWD/$(BIN):$$PATH" CXX=zig-c++ CC=zig-cc; export PATH CXX CC' >$@; \
-	echo 'CMAKE_ARGS="-DCMAKE_AR=$$PWD/$(BIN)/zig-ar -DCMAKE_RANLIB=$$PWD/$(BIN)/zig-ranlib -DCMAKE_CXX_SCAN_FOR_MODULES=OFF"; export CMAKE_ARGS' >>$@
+	echo 'CMAKE_ARGS="-DCMAKE_AR=$$PWD/$(BIN)/zig-ar -DCMAKE_RANLIB=$$PWD/$(BIN)/zig-ranlib -DCMAKE_CXX_SCAN_FOR_MODULES=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"; export CMAKE_ARGS' >>$@
 
 .venv/installed: .venv/compiler pyproject.toml $(SOURCES)
 	@echo 'Building the kernels'

@@ -27,7 +27,6 @@ SURFACE_KINDS = [
     ("a.msh", {"file_format": "gmsh"}),
     ("a.msh", {"file_format": "gmsh", "binary": False}),
     ("a.msh", {"file_format": "gmsh22"}),
-    ("a.msh", {"file_format": "ansys"}),
     ("a.inp", {}),
     ("a.avs", {}),
     ("a.mesh", {}),
@@ -35,7 +34,6 @@ SURFACE_KINDS = [
     ("a.vol", {}),
     ("a.dat", {}),
     ("a.tec", {}),
-    ("a.mdpa", {}),
     ("a.xml", {}),
 ]
 VOLUME_KINDS = [*SURFACE_KINDS, *((f"a.{s}", {}) for s in ("bdf", "fem", "nas", "su2", "f3grid"))]

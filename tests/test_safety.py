@@ -215,9 +215,10 @@ def test_a_build_writes_beside_the_tree_and_renames(tmp_path: Path) -> None:
 
 
 def test_libraries_read_a_mesh_and_do_nothing_else(tmp_path: Path) -> None:
-    names = sorted({name for name, _ in VOLUME_KINDS})
+    kinds = dict(VOLUME_KINDS)
+    names = sorted(kinds)
     for name in names:
-        write(tmp_path / name, [("tetra", np.array([[0, 1, 2, 5], [0, 2, 3, 7]]))])
+        write(tmp_path / name, [("tetra", np.array([[0, 1, 2, 5], [0, 2, 3, 7]]))], **kinds[name])
 
     found = watched(tmp_path, *(("info", name) for name in names))
 

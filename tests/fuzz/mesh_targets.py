@@ -38,7 +38,7 @@ SUFFIXES = {
     "tecplot": (".dat", ".tec"),
     "su2": (".su2",),
     "ucd": (".avs",),
-    "others": (".vol", ".f3grid", ".mdpa", ".xml"),
+    "others": (".vol", ".f3grid", ".xml"),
 }
 
 

@@ -231,6 +231,8 @@ def test_includes_and_inputs_below_the_folder_are_followed(tmp_path):
 
     assert mesh.triangles.tolist() == [[0, 1, 2]]
     assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]]
+    names = r"sub/mesh.inc, sub/nodes.txt, sub\deep\elements.inc"
+    assert mesh.notes == (f"3 files that the deck names read with it: {names}",)
 
 
 def test_axisymmetric_elements_are_flat_sections_and_told():

@@ -24,6 +24,28 @@ def test_ngen_divides_the_line_between_two_nodes():
     ]
 
 
+@pytest.mark.parametrize("middle", ["7", ", 1, 1, 5"])
+def test_ngen_divides_an_arc_about_a_node_or_a_place(middle):
+    nodes = "*NODE\n1, 3, 1, 5\n4, 1, 3, 5\n7, 1, 1, 5\n"
+
+    mesh = deck(
+        f"{nodes}*NGEN, LINE=C, NSET=rim\n1, 4, 1, {middle}\n*ELEMENT, TYPE=S3\n1, 2, 3, 7\n"
+    )
+
+    # From angle 0 to 90 degrees at radius 2 about (1, 1, 5): at 30 and 60 degrees.
+    half, root = 1, np.sqrt(3)
+    expected = [[1 + root, 1 + half, 5], [1 + half, 1 + root, 5], [1, 1, 5]]
+    np.testing.assert_allclose(mesh.vertices[mesh.triangles[0]], expected, atol=1e-15)
+
+
+def test_ncopy_turns_several_times():
+    copied = f"{SQUARE}*NSET, NSET=s\n5\n*NCOPY, CHANGE NUMBER=10, OLD SET=s, SHIFT, MULTIPLE=3\n"
+
+    mesh = deck(f"{copied}1, 0, 0\n0, 0, 0, 0, 0, 1, 30\n{TRIANGLE.format(15)}")
+
+    np.testing.assert_allclose(mesh.vertices[-1], [0, 5, 2], atol=1e-15)
+
+
 def test_ngen_may_count_down():
     mesh = deck(f"{SQUARE}*NGEN\n5, 1, -1\n{TRIANGLE.format(4)}")
 
@@ -49,7 +71,7 @@ def test_nfill_keeps_the_order_of_unsorted_sets():
 
 
 def test_sets_may_be_generated():
-    sets = "*NSET, NSET=a, GENERATE\n1, 5, 4\n*NSET, NSET=b, GENERATE\n101, 105, 4\n"
+    sets = "*NSET, NSET=a, GENERATE\n1, 5, 4\n*NSET, NSET=b, GEN\n101, 105, 4\n"
 
     mesh = deck(f"{SQUARE}{sets}*NFILL\na, b, 2, 50\n{TRIANGLE.format(55)}")
 
@@ -61,6 +83,8 @@ def test_sets_may_be_generated():
     [
         ("1, 2, 3", [5, 2, 5]),
         ("0, 0, 0\n1, 0, 0, 1, 0, 9, 90", [1, 3, 2]),
+        # Moved first, then turned.
+        ("1, 2, 3\n1, 0, 0, 1, 0, 9, 90", [-1, 4, 5]),
         ("\n0, 0, 0, 0, 0, 1, 180", None),
     ],
 )
@@ -132,7 +156,13 @@ def test_elcopy_copies_a_set():
         ("*NGEN\n1, 5, 0\n", r":7: \*NGEN from node 1 to 5 by steps of 0"),
         ("*NGEN\n1\n", r":7: a number of \*NGEN is left out"),
         ("*NGEN\n1, 5, 1, 9\n", r":7: \*NGEN with 4 fields, at most 3 are read"),
-        ("*NGEN, LINE=C\n1, 5, 1, 9\n", r":6: \*NGEN with the parameter LINE is not read"),
+        ("*NGEN, LINE=P\n1, 5, 1, 9\n", r":6: \*NGEN with LINE=P is not read; write the nodes"),
+        ("*NGEN, LINE=C, SYSTEM=C\n1, 5, 1, 9\n", r":6: \*NGEN with the parameter SYSTEM is not"),
+        ("*NGEN, LINE=C\n1, 5, 1, 9\n", r":7: \*NGEN uses node 9, which is not defined before"),
+        ("*NGEN, LINE=C\n1, 5\n", r":7: \*NGEN without the middle of its circle is not read"),
+        ("*NGEN, LINE=C\n1, 5, 1, 101\n", r":7: \*NGEN of an arc between radii 1 and "),
+        ("*NGEN, LINE=C\n1, 5, 1, , 2, 0, 1\n", r":7: \*NGEN of an arc .*, or of 180 degrees"),
+        ("*SYSTEM\n1,\n*NGEN, LINE=C\n1, 5, 1, , 2\n", r":9: \*NGEN within \*SYSTEM is not read"),
         ("*NGEN\n1, 100000005\n", "20000000 are read|not defined before it"),
         ("*NFILL\na, b, 2, 1\n", r":7: \*NFILL names the set 'a', which is not defined"),
         ("*NFILL\n1, 5\n", r":7: \*NFILL wants two sets, intervals and an increment"),
@@ -145,10 +175,6 @@ def test_elcopy_copies_a_set():
         ("*NCOPY, CHANGE NUMBER=1, OLD SET=a, POLE\n", r":6: \*NCOPY with the parameter POLE"),
         ("*NCOPY, CHANGE NUMBER=1, OLD SET=a\n", r":6: \*NCOPY without SHIFT is not read"),
         ("*NCOPY, CHANGE NUMBER=x, OLD SET=a, SHIFT\n", r":6: \*NCOPY: CHANGENUMBER 'X?x?' is not"),
-        (
-            "*NCOPY, CHANGE NUMBER=9, OLD SET=1, SHIFT\n1, 0, 0\n0, 0, 0, 0, 0, 1, 9\n",
-            r":6: \*NCOPY with a translation and a rotation at once is not read",
-        ),
         ("*ELGEN\n3, 2\n", r":7: \*ELGEN uses element 3, which is not defined before it"),
         ("*ELEMENT, TYPE=S3\n1, 1, 5, 101\n*ELGEN\n1, 2, 4, 1, 2\n", r":9: a number of \*ELGEN is"),
         ("*ELEMENT, TYPE=S3\n1, 1, 5, 101\n*ELGEN\n1, 0\n", r":9: \*ELGEN makes 0 nodes or"),

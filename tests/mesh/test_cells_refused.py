@@ -29,19 +29,13 @@ CELL_TYPES 2
 """
 
 
-MEDIT = b"""MeshVersionFormatted 2
-Dimension 3
-Vertices
-4
-0 0 0 0
-1 0 0 0
-1 1 0 0
-0 1 0 0
-Triangles
-2
-1 2 3 0
-1 3 4 0
-End
+FLAC3D = b"""* made by hand
+G 1 0 0 0
+G 2 1 0 0
+G 3 1 1 0
+G 4 0 1 0
+F T3 1 1 2 3
+F T3 2 1 3 4
 """
 
 
@@ -107,7 +101,6 @@ SPACING 1 1 1
 @pytest.mark.parametrize(
     ("suffix", "data"),
     [
-        (".mesh", b"MeshVersionFormatted 2\nDimension 3\nVertices\n4000000000\n0 0 0 0\n"),
         (".vol", b"mesh3d\ndimension\n3\npoints\n4000000000\n0 0 0\n"),
     ],
 )
@@ -147,9 +140,9 @@ def test_cells_turn_every_exception_of_a_reader_into_a_mesh_error(monkeypatch, f
         sys.stdout.write("words of the library")
         raise fault
 
-    monkeypatch.setattr("meshio.medit.read", failing)
+    monkeypatch.setattr("meshio.flac3d.read", failing)
     with pytest.raises(MeshError, match="meshio cannot read it: it is not what a file") as caught:
-        load_mesh_bytes(MEDIT, ".mesh")
+        load_mesh_bytes(FLAC3D, ".f3grid")
 
     assert caught.value.__cause__ is fault
     assert not re.search(r"words of|Error|deep|odd", str(caught.value))
@@ -159,28 +152,30 @@ def test_cells_let_an_interrupt_pass(monkeypatch):
     def interrupted(path):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("meshio.medit.read", interrupted)
+    monkeypatch.setattr("meshio.flac3d.read", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        load_mesh_bytes(MEDIT, ".mesh")
+        load_mesh_bytes(FLAC3D, ".f3grid")
 
 
 def test_cells_name_a_package_that_is_missing(monkeypatch):
-    monkeypatch.setitem(sys.modules, "meshio.medit", None)
+    monkeypatch.setitem(sys.modules, "meshio.flac3d", None)
 
-    with pytest.raises(MeshError, match=r"needs the package meshio\.medit, which is not installed"):
-        load_mesh_bytes(MEDIT, ".mesh")
+    with pytest.raises(
+        MeshError, match=r"needs the package meshio\.flac3d, which is not installed"
+    ):
+        load_mesh_bytes(FLAC3D, ".f3grid")
 
 
 def test_cells_refuse_a_file_that_changes_meanwhile(tmp_path, monkeypatch):
-    path = tmp_path / "a.mesh"
-    path.write_bytes(MEDIT)
-    read = meshio.medit.read
+    path = tmp_path / "a.f3grid"
+    path.write_bytes(FLAC3D)
+    read = meshio.flac3d.read
 
     def changing(name):
-        path.write_bytes(MEDIT.replace(b"1 1 0", b"2 2 0"))
+        path.write_bytes(FLAC3D.replace(b"1 1 0", b"2 2 0"))
         return read(name)
 
-    monkeypatch.setattr("meshio.medit.read", changing)
+    monkeypatch.setattr("meshio.flac3d.read", changing)
     with pytest.raises(MeshError, match="changed while it was read"):
         load_mesh(path)
 
@@ -189,10 +184,10 @@ def test_cells_leave_the_memory_limit_and_the_libraries_as_they_were():
     code = (
         "import resource; before = resource.getrlimit(resource.RLIMIT_AS)\n"
         "from obbcli.mesh import load_mesh_bytes\n"
-        f"load_mesh_bytes({MEDIT!r}, '.mesh')\n"
-        "import meshio.medit._medit, meshio._files\n"
+        f"load_mesh_bytes({FLAC3D!r}, '.f3grid')\n"
+        "import meshio.flac3d._flac3d, meshio._files\n"
         "assert resource.getrlimit(resource.RLIMIT_AS) == before\n"
-        "assert 'open' not in vars(meshio.medit._medit)\n"
+        "assert 'open' not in vars(meshio.flac3d._flac3d)\n"
     )
 
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
@@ -201,13 +196,15 @@ def test_cells_leave_the_memory_limit_and_the_libraries_as_they_were():
 
 
 def test_cells_let_the_library_open_no_other_file(tmp_path, monkeypatch):
-    (tmp_path / "secret.mesh").write_bytes(MEDIT)
-    (tmp_path / "part.mesh").write_bytes(MEDIT)
-    read = meshio.medit.read
-    monkeypatch.setattr("meshio.medit.read", lambda _path: read(tmp_path / "secret.mesh"))
+    (tmp_path / "secret.f3grid").write_bytes(FLAC3D)
+    (tmp_path / "part.f3grid").write_bytes(FLAC3D)
+    read = meshio.flac3d.read
+    monkeypatch.setattr("meshio.flac3d.read", lambda _path: read(tmp_path / "secret.f3grid"))
 
-    with pytest.raises(MeshError, match=r"names another file, '.*secret\.mesh'; copy that into it"):
-        load_mesh(tmp_path / "part.mesh")
+    with pytest.raises(
+        MeshError, match=r"names another file, '.*secret\.f3grid'; copy that into it"
+    ):
+        load_mesh(tmp_path / "part.f3grid")
 
 
 def test_cells_of_entities_that_multiply_end_soon():

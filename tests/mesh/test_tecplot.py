@@ -194,10 +194,12 @@ def test_zones_without_surface_are_passed_over_and_told():
     line = "ZONE N=2, E=1, F=FEPOINT, ET=LINESEG\n0 0 0\n9 9 9\n1 2\n"
     curve = 'ZONE T="curve", I=2, F=POINT\n8 8 8\n7 7 7\n'
 
-    mesh = tecplot(HEAD + line + curve + "ZONE\n1 1 1\n2 2 2\n" + TRIANGLES)
+    empty = "ZONE N=0, E=0, F=FEPOINT, ET=TRIANGLE\nZONE I=0, J=0, K=1, F=POINT\n"
+
+    mesh = tecplot(HEAD + line + curve + "ZONE\n1 1 1\n2 2 2\n" + empty + TRIANGLES)
 
     assert len(mesh.triangles) == 2
-    assert mesh.notes == ("3 zones of points or lines passed over: no surface",)
+    assert mesh.notes == ("5 zones of points or lines passed over: no surface",)
 
 
 def test_flat_files_lie_at_height_zero_and_say_so():

@@ -30,7 +30,7 @@ _GLTF = Format("glTF", "gltf", parts="gltf")
 _VTK = Format("VTK", "vtk")
 _GMSH = Format("Gmsh", "gmsh")
 _NASTRAN = Format("Nastran, OptiStruct", "nastran")
-_MEDIT = Format("Medit", "cells", "medit")
+_MEDIT = Format("Medit", "medit")
 _TECPLOT = Format("Tecplot", "tecplot")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
@@ -62,7 +62,6 @@ FORMATS = {
     ".tec": _TECPLOT,
     ".plt": _TECPLOT,
     ".f3grid": Format("FLAC3D", "cells", "flac3d"),
-    ".mdpa": Format("MDPA", "cells", "mdpa"),
     ".xml": Format("DOLFIN XML", "cells", "dolfin"),
 }
 

@@ -41,6 +41,9 @@ def read_abaqus(source: Source) -> MeshArrays:
     deck = Deck(source)
     for section in deck.sections():
         model.take(deck, section)
+    if deck.names:
+        names = ", ".join(list(deck.names)[:5])
+        source.note(f"{counted(len(deck.names), 'file')} that the deck names read with it: {names}")
     parts = model.parts(source)
     if not any(part.blocks for part in parts):
         fault = f"has no surface: {counted(model.element_count, 'element')}, none with a face"

@@ -28,20 +28,28 @@ if TYPE_CHECKING:
 
 #: Most nodes or elements that one keyword makes: a slip of a key must not fill the memory.
 _MOST = 20_000_000
+#: Radii of an arc's ends may differ by so much, as coordinates are rounded when they are written.
+_ROUND = 1e-4
 _WRITE_OUT = "write the nodes and elements out, each with its number"
 
 
 def generate_nodes(scope: Scope, section: Section) -> None:
-    """Take *NGEN: nodes on straight lines between two nodes, at equal intervals.
+    """Take *NGEN: nodes between two nodes at equal intervals, on a straight line or an arc.
 
-    Each line of data: the first and the last node, and the increment of the numbers (1).
+    Each line of data: the first and the last node, the increment of the numbers (1), and with
+    LINE=C the node in the middle of the circle, or none and its place.
 
     Raises:
-        MeshError: arcs and parabolas, a node that is not defined; with the line.
+        MeshError: parabolas, arcs of 180 degrees and more, a node that is not defined; with the
+            line.
     """
-    check_options(section, {"NSET"})
+    check_options(section, {"NSET", "LINE"})
+    is_arc = section.label("LINE") == "C"
+    if "LINE" in section.options and not is_arc:
+        fault = f"*NGEN with LINE={section.label('LINE')[:20]} is not read"
+        raise section.source.error(fault, _WRITE_OUT, at=str(section.line))
     numbers, places = [], []
-    for line, words in _whole_lines(section, 3):
+    for line, words, rest in _whole_lines(section, 4 if is_arc else 3, 3 if is_arc else 0):
         first, last = _given(section, line, *words[:2])
         step = 1 if words[2] is None else words[2]
         intervals = (last - first) // step if step else 0
@@ -52,7 +60,11 @@ def generate_nodes(scope: Scope, section: Section) -> None:
         a, b = _place(scope, section, line, first), _place(scope, section, line, last)
         share = np.arange(intervals + 1)[:, np.newaxis] / intervals
         numbers.append(first + step * np.arange(intervals + 1, dtype=np.int64))
-        places.append(a + share * (b - a))
+        if is_arc:
+            center = _center(scope, section, line, words[3], rest)
+            places.append(_arc(section, line, (a, b, center), share))
+        else:
+            places.append(a + share * (b - a))
         places[-1][-1] = b
     for row_numbers, row_places in zip(numbers, places, strict=True):
         scope.add_nodes(row_numbers, row_places, section.label("NSET"))
@@ -92,22 +104,19 @@ def fill_nodes(scope: Scope, section: Section) -> None:
 
 
 def copy_nodes(scope: Scope, section: Section) -> None:
-    """Take *NCOPY with SHIFT: copies of a set, moved or turned about an axis.
+    """Take *NCOPY with SHIFT: a copy of a set, moved once, then turned MULTIPLE times.
 
     Raises:
-        MeshError: other kinds of copies, a shift and a turn at once; with the line.
+        MeshError: other kinds of copies; with the line.
     """
-    check_options(section, {"CHANGENUMBER", "OLDSET", "NEWSET", "SHIFT"})
+    check_options(section, {"CHANGENUMBER", "OLDSET", "NEWSET", "SHIFT", "MULTIPLE"})
     line = str(section.line)
     added = _option(section, "CHANGENUMBER")
     if "SHIFT" not in section.options:
         raise section.source.error("*NCOPY without SHIFT is not read", _WRITE_OUT, at=line)
     old = members(scope.sets, section, line, _named(section, "OLDSET"), {})
-    where = placement(section)
-    if where.turn is not None and where.shift.any():
-        fault = "*NCOPY with a translation and a rotation at once is not read"
-        raise section.source.error(fault, "copy in two steps", at=line)
-    places = where.placed(_places(scope, section, line, old))
+    times = _option(section, "MULTIPLE") if "MULTIPLE" in section.options else 1
+    places = placement(section, times).placed(_places(scope, section, line, old))
     scope.add_nodes(old + added, places, section.label("NEWSET"))
 
 
@@ -121,7 +130,7 @@ def generate_elements(scope: Scope, section: Section) -> None:
         MeshError: an element that is not defined, an increment that is not given; with the line.
     """
     check_options(section, {"ELSET", "ALLNODES"})
-    for line, words in _whole_lines(section, 10):
+    for line, words, _ in _whole_lines(section, 10):
         block, row = _element(scope, section, line, _given(section, line, words[0])[0])
         numbers, nodes = block.numbers[row : row + 1], block.nodes[row : row + 1]
         first_steps = [1 if word is None else word for word in words[2:4]]
@@ -160,16 +169,63 @@ def copy_elements(scope: Scope, section: Section) -> None:
         scope.add_elements(made, section.label("NEWSET"))
 
 
-def _whole_lines(section: Section, most: int) -> Iterator[tuple[str, list[int | None]]]:
-    """Yield number and numbers of each line of at most so many fields; None for those left out."""
+def _whole_lines(
+    section: Section, most: int, more: int = 0
+) -> Iterator[tuple[str, list[int | None], NDArray[np.float64]]]:
+    """Yield each line's number, its whole numbers, and those after them that need not be whole.
+
+    Args:
+        section: the keyword.
+        most: how many whole numbers a line has at most; None for those left out.
+        more: how many numbers follow at most; NaN for those left out.
+    """
     rows = comma_rows(section.source, section.data, section.first)
-    table = rows.table(most)
-    whole_numbers(section.source, rows, np.nan_to_num(table), f"*{section.keyword}:")
+    table = rows.table(most + more)
+    whole_numbers(section.source, rows, np.nan_to_num(table[:, :most]), f"*{section.keyword}:")
     for line, count, row in zip(rows.lines.tolist(), rows.counts.tolist(), table, strict=True):
-        if count > most:
-            fault = f"*{section.keyword} with {count} fields, at most {most} are read"
+        if count > most + more:
+            fault = f"*{section.keyword} with {count} fields, at most {most + more} are read"
             raise section.source.error(fault, _WRITE_OUT, at=str(line))
-        yield str(line), [None if np.isnan(word) else int(word) for word in row]
+        words = [None if np.isnan(word) else int(word) for word in row[:most]]
+        yield str(line), words, row[most:]
+
+
+def _center(
+    scope: Scope, section: Section, line: str, node: int | None, place: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the middle of an arc: a node's place, or one that is written out."""
+    if node:
+        return _place(scope, section, line, _given(section, line, node)[0])
+    if np.isnan(place).all() or scope.system is not None:
+        what = "within *SYSTEM" if scope.system is not None else "without the middle of its circle"
+        raise section.source.error(f"*NGEN {what} is not read", "name a node in it", at=line)
+    return np.nan_to_num(place)
+
+
+def _arc(
+    section: Section,
+    line: str,
+    ends: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    share: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return places at equal angles between two about a third, (N, 3).
+
+    Args:
+        section: the keyword.
+        line: where the arc is asked for.
+        ends: both ends and the middle of the circle.
+        share: (N, 1), from 0 to 1.
+    """
+    a, b = ends[0] - ends[2], ends[1] - ends[2]
+    radius, other = float(np.linalg.norm(a)), float(np.linalg.norm(b))
+    across = b - a * (float(a @ b) / radius**2 if radius else 0.0)
+    length = float(np.linalg.norm(across))
+    if not abs(radius - other) <= _ROUND * radius or length <= _ROUND * radius:
+        fault = f"*NGEN of an arc between radii {radius:.9g} and {other:.9g}, or of 180 degrees"
+        raise section.source.error(fault, _WRITE_OUT, at=line)
+    angle = float(np.arctan2(length, float(a @ b) / radius)) * share
+    stretch = 1.0 + share * (other / radius - 1.0)
+    return ends[2] + stretch * (np.cos(angle) * a + np.sin(angle) * across * (radius / length))
 
 
 def _given(section: Section, line: str, *words: int | None) -> list[int]:

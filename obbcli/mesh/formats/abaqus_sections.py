@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.mesh.formats.text import strip_mark, whole
+from obbcli.mesh.formats.text import shown, strip_mark, whole
 from obbcli.mesh.source import Source
 
 if TYPE_CHECKING:
@@ -58,10 +58,14 @@ class Deck:
 
     Args:
         source: the deck.
+
+    Attributes:
+        names: of the files that it names, as far as it has been read.
     """
 
     def __init__(self, source: Source) -> None:
         self._source = source
+        self.names: dict[str, None] = {}
         self._open: list[str] = []
         self._files = 0
 
@@ -132,9 +136,11 @@ class Deck:
         if not (path.is_file() and path.resolve().is_relative_to(folder.resolve())):
             raise source.error(f"{place}, which is no file", "put it beside the deck", at=line)
         try:
-            return Source(str(path), path.name, path.read_bytes(), path)
+            found = Source(str(path), path.name, path.read_bytes(), path)
         except OSError as fault:
             raise source.error(f"{place}: {fault.strerror}", at=line) from fault
+        self.names[name] = None
+        return found
 
 
 def whole_word(section: Section, word: bytes, line: int, what: str) -> int:
@@ -162,14 +168,25 @@ def checked_number(section: Section, value: int, line: int) -> int:
 def check_options(section: Section, known: set[str]) -> None:
     """Refuse a parameter that is not understood, where it could place or make nodes and elements.
 
+    Abbreviated parameters are written out: they need only be long enough to be told apart.
+
     Raises:
         MeshError: with the line.
     """
+    write_out(section, known)
     for option in section.options:
         if option not in known:
             fault = f"*{section.keyword} with the parameter {option[:40]} is not read"
             remedy = "write the nodes and elements out, each with its number"
             raise section.source.error(fault, remedy, at=str(section.line))
+
+
+def write_out(section: Section, known: set[str]) -> None:
+    """Write parameters out that are abbreviated: GEN becomes GENERATE."""
+    for option in [each for each in section.options if each not in known and len(each) > 2]:
+        meant = [name for name in known if name.startswith(option)]
+        if len(meant) == 1:
+            section.options.setdefault(meant[0], section.options.pop(option))
 
 
 def _text(source: Source) -> bytes:
@@ -185,8 +202,9 @@ def _split(source: Source) -> Iterator[Section]:
     head = _COMMENT.sub(b"", data[: found[0].start()] if found else data)
     if head.strip():
         line = head[: len(head) - len(head.lstrip())].count(b"\n") + 1
-        remedy = "a deck begins with a keyword such as *HEADING or *NODE"
-        raise source.error("words before the first keyword", remedy, at=str(line))
+        fault = f"'{shown(head.split()[0])}' before the first keyword"
+        remedy = "an Abaqus deck begins with a keyword such as *HEADING or *NODE"
+        raise source.error(fault, remedy, at=str(line))
     line, seen = 1, 0
     ends = [*(match.start() for match in found[1:]), len(data)]
     for match, end in zip(found, ends, strict=False):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from obbcli.mesh.formats.abaqus_sections import whole_word
+from obbcli.mesh.formats.abaqus_sections import whole_word, write_out
 from obbcli.mesh.formats.text import shown
 
 if TYPE_CHECKING:
@@ -65,13 +65,19 @@ def members(
     return numbers
 
 
+def _options(section: Section) -> set[str]:
+    """Return the parameters of a set that are read, after those abbreviated are written out."""
+    known = {section.keyword, "GENERATE", "UNSORTED", "INTERNAL"}
+    write_out(section, known)
+    return known
+
+
 def _listed(
     sets: Sets, section: Section, known: dict[str, NDArray[np.int64] | None]
 ) -> NDArray[np.int64]:
     """Return the numbers that *NSET or *ELSET lists."""
     source = section.source
-    other = set(section.options) - {section.keyword, "GENERATE", "UNSORTED", "INTERNAL"}
-    if other:
+    if not _options(section).issuperset(section.options):
         fault = f"the set of *{section.keyword} is used to generate, and defined in a way not read"
         raise source.error(fault, "define it by its numbers", at=str(section.line))
     found = [np.zeros(0, dtype=np.int64)]

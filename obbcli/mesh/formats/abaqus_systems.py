@@ -107,10 +107,14 @@ class Placement(NamedTuple):
         return moved if self.turn is None else (moved - self.point) @ self.turn.T + self.point
 
 
-def placement(section: Section) -> Placement:
+def placement(section: Section, times: int = 1) -> Placement:
     """Return the placement that the data of *INSTANCE, or of *NCOPY with SHIFT, give.
 
     A line with a translation; a line with two points on an axis and an angle in degrees.
+
+    Args:
+        section: the keyword.
+        times: how often the rotation is applied.
 
     Raises:
         MeshError: other counts of numbers, or an axis without direction; with the line.
@@ -130,7 +134,7 @@ def placement(section: Section) -> Placement:
         raise _no_placement(section, rows, "two different points on the axis")
     x, y, z = axis / length
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    cosine, sine = _cosine(degrees), _sine(degrees)
+    cosine, sine = _cosine(degrees * times), _sine(degrees * times)
     along = np.outer(axis / length, axis / length)
     return Placement(shift, point, cosine * np.eye(3) + sine * cross + (1.0 - cosine) * along)
 

@@ -1,4 +1,4 @@
-"""VTK, VTU, Gmsh and other formats of finite elements, through meshio.
+"""Netgen, FLAC3D and DOLFIN, and plain VTK grids where VTK is not there, through meshio.
 
 meshio reads these right, but believes counts, takes indices that are out of range and ends the
 process on some errors: everything is checked before and after it.
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from obbcli.mesh.formats.cell_surface import Block, surface
-from obbcli.mesh.formats.claimed_counts import check_claims
+from obbcli.mesh.formats.claimed_counts import listed_cells
 from obbcli.mesh.formats.meshio_guard import ending_files, fenced
 
 if TYPE_CHECKING:
@@ -38,11 +38,8 @@ _SAME_AS = {
     ("VTK_LAGRANGE_WEDGE", 6): "wedge",
     ("VTK_LAGRANGE_HEXAHEDRON", 8): "hexahedron",
 }
-#: Gmsh's numbers of the nodes that meshio leaves as they are, in VTK's order.
-_GMSH_ORDER = {
-    "pyramid14": [0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13],
-    "wedge18": [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16],
-}
+#: Cells whose middle nodes meshio sorts in a way that no document confirms.
+_UNSURE = {"netgen": ("quad8", "hexahedron20")}
 
 
 def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
@@ -56,23 +53,19 @@ def cell_reader(kind: str, suffix: str) -> Callable[[Source], MeshArrays]:
     """
 
     def read(source: Source) -> MeshArrays:
-        chosen = kind
-        if kind == "gmsh" and not source.data.lstrip().startswith(b"$"):
-            chosen = "ansys"  # Fluent's format, of the same suffix
-        check_claims(source, chosen)
-        return read_cells(source, chosen, suffix, None)
+        return read_cells(source, kind, suffix, listed_cells(source, kind))
 
     return read
 
 
-def read_cells(source: Source, kind: str, suffix: str, cell_count: int | None) -> MeshArrays:
+def read_cells(source: Source, kind: str, suffix: str, cell_count: int) -> MeshArrays:
     """Return the points and triangles of what meshio reads.
 
     Args:
-        source: the file, whose claims were looked at.
+        source: the file, all of whose keywords are known.
         kind: meshio's module of the format.
         suffix: the suffix meshio expects.
-        cell_count: how many cells the file says it has; None where it does not say.
+        cell_count: how many cells the file lists.
 
     Raises:
         MeshError: meshio cannot read it, or reads fewer or more cells.
@@ -81,21 +74,23 @@ def read_cells(source: Source, kind: str, suffix: str, cell_count: int | None) -
     with _as_file(source, suffix) as path, ending_files("meshio.", path):
         mesh = fenced(source, "meshio", lambda: module.read(str(path)))
     points = _points(source, mesh.points)
-    blocks = [_block(kind, block.type, block.data) for block in mesh.cells]
+    blocks = [_block(source, kind, block.type, block.data) for block in mesh.cells]
     read = sum(len(block.nodes) for block in blocks)
-    if cell_count not in (None, read):
+    if cell_count != read:
         fault = f"claims {cell_count} cells, but {read} could be read"
         raise source.error(fault, "it was cut short, or its counts are wrong")
     return points, surface(source, points, blocks)
 
 
-def _block(module: str, name: str, nodes: Any) -> Block:
+def _block(source: Source, module: str, name: str, nodes: Any) -> Block:
     """Return cells as VTK numbers them; those of any order by the type of so many nodes."""
+    if name in _UNSURE.get(module, ()):
+        fault = f"cells of type {name} are not read from this format"
+        raise source.error(fault, "save it with cells of first order")
     kind = name.rstrip("0123456789")
     if kind not in ("polygon", "polyhedron"):
         kind = _SAME_AS.get((name, np.shape(nodes)[-1]), name)
-    order = _GMSH_ORDER.get(kind) if module == "gmsh" else None
-    return Block(kind, nodes if order is None else np.asarray(nodes)[:, order])
+    return Block(kind, nodes)
 
 
 @contextmanager

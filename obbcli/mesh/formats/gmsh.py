@@ -68,7 +68,7 @@ _CUT = "it was cut short, or its counts are wrong"
 
 
 def read_gmsh(source: Source) -> MeshArrays:
-    """Return points and triangles of a Gmsh file; Fluent's files of the same suffix go to meshio.
+    """Return points and triangles of a Gmsh file.
 
     Sections that the format does not know are comments, by its manual; so are names, entities,
     periodic links and results here.
@@ -77,9 +77,8 @@ def read_gmsh(source: Source) -> MeshArrays:
         MeshError: another version, a count that does not fit, a node that is not there.
     """
     if not source.data.lstrip().startswith(b"$"):
-        from obbcli.mesh.formats.cells import cell_reader
-
-        return cell_reader("ansys", ".msh")(source)
+        fault = "is no Gmsh file; Fluent's files of the same suffix are not read"
+        raise source.error(fault, "export its surface, such as STL")
     return _Reader(source).read()
 
 

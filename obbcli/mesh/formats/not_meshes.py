@@ -75,6 +75,11 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
     (rb"(<\?xml[^>]*>\s*)?(<!doctype\s+x3d[^>]*>\s*)?<X3D\b", "an X3D scene", _EXPORT),
     (rb"(#[^\n]*\n\s*)*newmtl\s", "a library of materials, which belongs to an OBJ file", _MESH),
     (rb"AC10\d\d\x00", "a DWG drawing", _EXPORT),
+    (
+        rb"(//[^\n]*\s+)*begin\s+(modelpartdata|nodes|properties)\b",
+        "a Kratos model (MDPA), whose elements do not say their shape",
+        "export it as VTK",
+    ),
     (rb"(<\?xml[^>]*>\s*)?<Error>", "an error that a web server gave (XML)", _FETCH),
     (rb"(<\?xml[^>]*>\s*)?(<!--.{0,2000}?-->\s*)?(<!doctype\s+svg|<svg)\b", "a drawing", _EXPORT),
     (

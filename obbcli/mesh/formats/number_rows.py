@@ -162,7 +162,8 @@ def _number(source: Source, word: bytes, line: int) -> float:
             raise ValueError
         return float(word.upper().replace(b"D", b"E"))
     except ValueError as fault:
-        raise source.error(f"'{shown(word)}' is not a number", at=str(line)) from fault
+        remedy = "write the parameter's value in its place" if word.startswith(b"<") else ""
+        raise source.error(f"'{shown(word)}' is not a number", remedy, at=str(line)) from fault
 
 
 def _one_by_one(source: Source, lines: list[bytes], first: int) -> Iterator[float]:

@@ -76,6 +76,7 @@ def layout_of(source: Source, zone: Zone, width: int) -> Layout:
     else:
         is_block = not packing and _is_block(source, zone, width, points)
     cell, nodes = _ELEMENTS[kind]
+    cell = cell if points and cells else None
     own = 0 if "CONNECTIVITYSHAREZONE" in zone.keys else nodes
     return Layout(cell, False, (points, 1, 1), points, cells, own, is_block)
 
@@ -83,7 +84,7 @@ def layout_of(source: Source, zone: Zone, width: int) -> Layout:
 def _ordered(source: Source, zone: Zone, packing: str, width: int) -> Layout:
     sizes = [_count(source, zone, key, default=1) for key in "IJK"]
     long = sum(size > 1 for size in sizes)
-    cell = (None, None, "quad", "hexahedron")[long]
+    cell = (None, None, "quad", "hexahedron")[long if all(sizes) else 0]
     known = any(key in zone.keys for key in "IJK")
     points = sizes[0] * sizes[1] * sizes[2]
     cells = int(np.prod([max(size - 1, 1) for size in sizes], dtype=object))
@@ -114,7 +115,7 @@ def _count(source: Source, zone: Zone, *keys: str, default: int | None = None) -
     if word is None:
         raise _refused(source, zone, f"the zone has no {name}", "write its counts")
     value = int(word) if word.isdecimal() and len(word) < 16 else -1
-    if not 0 < value <= len(source.data):
+    if not 0 <= value <= len(source.data):
         fault = f"{name}={word[:40]}, but the file has {len(source.data)} bytes"
         raise _refused(source, zone, fault, "it was cut short, or its counts are wrong")
     return value
