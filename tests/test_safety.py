@@ -240,6 +240,32 @@ def test_codecs_unpack_a_mesh_and_do_nothing_else(
     assert watched(tmp_path, ("info", "packed.glb")) == [INNOCENT]
 
 
+@pytest.mark.needs("vtk")
+def test_vtk_reads_a_mesh_and_does_nothing_else(tmp_path: Path) -> None:
+    import vtk_files
+
+    names = []
+    for number, make in enumerate(vtk_files.DATA_SETS.values()):
+        (folder := tmp_path / str(number)).mkdir()
+        names.append(vtk_files.write_xml(folder, make(), "appended", "zlib"))
+        names.append(vtk_files.write_legacy(folder / "a.vtk", make(), True, 51))
+    names.append(tmp_path / "a.vtm")
+    names[-1].write_text(
+        '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>'
+        '<DataSet index="0" file="0/a.vtu"/></vtkMultiBlockDataSet></VTKFile>'
+    )
+
+    found = watched(tmp_path, *(("info", str(name)) for name in names))
+
+    assert dict(zip(names, found, strict=True)) == dict.fromkeys(names, INNOCENT)
+
+
+def test_ear_clipping_reads_a_mesh_and_does_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("v 2 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 2 3 4 1\n")
+
+    assert watched(tmp_path, ("info", "a.obj")) == [INNOCENT]
+
+
 def test_our_readers_of_decks_read_a_mesh_and_do_nothing_else(tmp_path: Path) -> None:
     names = [f"{number}{suffix}" for number, (suffix, _) in enumerate(DECKS)]
     for name, (_, data) in zip(names, DECKS, strict=True):

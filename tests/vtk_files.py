@@ -24,12 +24,6 @@ if TYPE_CHECKING:
 
 #: Text files have fewer digits than doubles.
 DIGITS = 6
-#: Ways to write a legacy file and an XML file.
-LEGACY = [(binary, version) for binary in (False, True) for version in (42, 51)]
-XML = [
-    *(("ascii", "none"), ("binary", "none"), ("binary", "zlib")),
-    *(("appended", "none"), ("appended", "zlib"), ("appended raw", "zlib"), ("appended", "lzma")),
-]
 _KINDS = {
     "vtkUnstructuredGrid": "UnstructuredGrid",
     "vtkPolyData": "PolyData",
@@ -166,3 +160,25 @@ def ids_of(numbers: list[int]) -> vtkIdList:
     for number in numbers:
         found.InsertNextId(number)
     return found
+
+
+CUBE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+TWO_CUBES = [*CUBE, (2, 0, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)]
+DATA_SETS = {
+    "grid": lambda: grid(
+        TWO_CUBES,
+        [
+            *((12, list(range(8))), (3, [0, 6]), (12, [1, 8, 9, 2, 5, 10, 11, 6])),
+            *((5, [0, 1, 6]), (1, [3]), (9, [0, 3, 7, 4]), (7, [8, 9, 11, 10])),
+        ],
+    ),
+    "voxels": lambda: grid(TWO_CUBES, [(11, [0, 1, 3, 2, 4, 5, 7, 6]), (8, [8, 9, 10, 11])]),
+    "surface": lambda: poly_data(CUBE, [[0, 1, 2, 3], [4, 5, 6]], lines=[[0, 6]]),
+    "strips": lambda: poly_data(CUBE, strips=[[0, 1, 3, 2, 7, 6]]),
+    "image": lambda: image((3, 4, 2)),
+    "moved image": lambda: image((3, 2, 2), (5, -3, 1)),
+    "flat image": lambda: image((3, 1, 4)),
+    "rectilinear": lambda: rectilinear([0, 1, 4], [2, 3], [-1, 0, 0.5]),
+    "structured": lambda: structured((4, 3, 2)),
+    "flat structured": lambda: structured((4, 3, 1)),
+}

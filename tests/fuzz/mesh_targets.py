@@ -23,6 +23,19 @@ from obbcli.mesh import load_mesh, load_mesh_bytes
 from obbcli.mesh.formats.nastran import read_nastran
 from obbcli.mesh.source import Source, read_source
 
+VTK_TEXT = b"""# vtk DataFile Version 3.0
+strips and polygons
+ASCII
+DATASET POLYDATA
+POINTS 5 float
+0 0 0 1 0 0 0 1 0 1 1 0 0 0 1
+POLYGONS 2 9
+4 0 1 3 2
+3 0 1 4
+TRIANGLE_STRIPS 1 5
+4 0 1 2 3
+POINT_DATA 5
+"""
 SUFFIXES = {
     "stl": (".stl",),
     "obj": (".obj",),
@@ -30,7 +43,7 @@ SUFFIXES = {
     "off": (".off",),
     "gltf": (".glb", ".gltf"),
     "vtk": (".vtk",),
-    "vtu": (".vtu",),
+    "vtkxml": (".vtu", ".vtp", ".vti", ".vts", ".vtr", ".vtm"),
     "gmsh": (".msh",),
     "abaqus": (".inp",),
     "nastran": (".bdf", ".fem", ".nas"),
@@ -51,6 +64,7 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
     files += [(".glb", data) for data in _documents()]
     files += _odd_files()
+    files += _vtk_files()
     files += [(".bdf", deck.encode("ascii")) for deck in SEEDS]
     surface = [("triangle", np.array([[0, 1, 2], [0, 2, 3]]))]
     volumes = [("tetra", TETRA)], [("hexahedron", HEXAHEDRON)]
@@ -75,6 +89,26 @@ def _documents() -> list[bytes]:
     if find_spec("meshopt"):
         packed.append(with_fallback(meshopt_square()))
     return [*(each.glb() for each in plain), *packed]
+
+
+def _vtk_files() -> list[tuple[str, bytes]]:
+    """Return VTK files of every kind of data set, as text, binary and packed."""
+    files = [(".vtk", VTK_TEXT), (".vtm", b'<VTKFile type="vtkMultiBlockDataSet" version="1.0">'
+              b'<vtkMultiBlockDataSet><DataSet index="0" file="a.vtu"/></vtkMultiBlockDataSet>'
+              b"</VTKFile>")]  # fmt: skip
+    if not find_spec("vtkmodules"):
+        return files
+    import vtk_files
+
+    with tempfile.TemporaryDirectory() as folder:
+        for make in vtk_files.DATA_SETS.values():
+            for binary, version in ((False, 42), (True, 42), (False, 51), (True, 51)):
+                path = vtk_files.write_legacy(Path(folder) / "a.vtk", make(), binary, version)
+                files.append((".vtk", path.read_bytes()))
+            for mode, packed in (("ascii", "none"), ("binary", "zlib"), ("appended raw", "none")):
+                path = vtk_files.write_xml(Path(folder), make(), mode, packed)
+                files.append((path.suffix, path.read_bytes()))
+    return files
 
 
 def _odd_files() -> list[tuple[str, bytes]]:

@@ -119,7 +119,7 @@ class _Walk(Cursor):
 
     def _part(self, keyword: str, data_set: str) -> None:
         """Take one part of a data set: points, cells, or what makes a grid."""
-        if keyword == "points":
+        if keyword == "points" and data_set:
             self._points = self.count()
             self.values(3 * self._points, self.kind())
         elif keyword in _CELLS and (keyword == "cells") == (data_set == "unstructured_grid"):

@@ -15,7 +15,7 @@ import numpy as np
 
 from obbcli.mesh.formats.text import shown
 from obbcli.mesh.formats.vtk_arrays import KINDS, ArrayFault, binary_values, text_values
-from obbcli.mesh.formats.vtk_xml_walk import CELLS, CUT, DATA_SETS, GRIDS, Array, Piece, Walk
+from obbcli.mesh.formats.vtk_xml_walk import CELLS, CUT, GRIDS, Array, Piece, Walk
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,9 +57,6 @@ def walk_xml(source: Source) -> Xml:
     """
     walk = Walk(source)
     walk.run()
-    if walk.data_set not in DATA_SETS:
-        fault = f"holds a '{shown(walk.data_set.encode())}', which is not read"
-        raise source.error(fault, "export its surface as PolyData (.vtp)")
     points = cells = 0
     for piece in walk.pieces:
         checked = _PieceCheck(source, walk, piece)

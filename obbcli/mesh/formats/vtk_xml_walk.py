@@ -150,6 +150,9 @@ class Walk:
 
     def _take_root(self, attributes: dict[str, str], line: int) -> None:
         self.data_set = attributes.get("type", "")
+        if self.data_set not in DATA_SETS:
+            fault = f"holds a '{shown(self.data_set.encode())}', which is not read"
+            raise self.error(fault, "export its surface as PolyData (.vtp)", line)
         order = "<" if attributes.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
         header = attributes.get("header_type", "UInt32")
         if header not in ("UInt32", "UInt64"):
