@@ -7,6 +7,7 @@ import pytest
 from abaqus_decks import deck
 
 from obbcli.errors import MeshError
+from obbcli.mesh.formats import abaqus_generated
 
 SQUARE = "*NODE\n1, 0, 0, 0\n5, 4, 0, 2\n101, 0, 1, 0\n105, 4, 1, 2\n"
 TRIANGLE = "*ELEMENT, TYPE=S3\n1, 1, {}, 101\n"
@@ -163,7 +164,10 @@ def test_elcopy_copies_a_set():
         ("*NGEN, LINE=C\n1, 5, 1, 101\n", r":7: \*NGEN of an arc between radii 1 and "),
         ("*NGEN, LINE=C\n1, 5, 1, , 2, 0, 1\n", r":7: \*NGEN of an arc .*, or of 180 degrees"),
         ("*SYSTEM\n1,\n*NGEN, LINE=C\n1, 5, 1, , 2\n", r":9: \*NGEN within \*SYSTEM is not read"),
-        ("*NGEN\n1, 100000005\n", "20000000 are read|not defined before it"),
+        (
+            "*NGEN\n1, 100000005\n",
+            ":7: .* makes 100000004 nodes or elements; a part may",
+        ),
         ("*NFILL\na, b, 2, 1\n", r":7: \*NFILL names the set 'a', which is not defined"),
         ("*NFILL\n1, 5\n", r":7: \*NFILL wants two sets, intervals and an increment"),
         ("*NFILL, BIAS=0.5\n1, 5, 2, 1\n", r":6: \*NFILL with the parameter BIAS is not read"),
@@ -203,3 +207,18 @@ def test_sets_that_name_each_other_end():
     mesh = deck(f"{SQUARE}*NSET, NSET=a0\n1\n{names}*NFILL\na59, 5, 2, 1\n{TRIANGLE.format(2)}")
 
     assert mesh.vertices[mesh.triangles[0]].tolist()[1] == [2, 0, 1]
+
+
+def test_sets_nested_too_deep_are_refused():
+    names = "".join(f"*NSET, NSET=a{k}\na{k - 1}\n" for k in range(1, 3000))
+
+    with pytest.raises(MeshError, match=r":\d+: .*names the set 'a\d+', which is not defined"):
+        deck(f"{SQUARE}*NSET, NSET=a0\n1\n{names}*NFILL\na2999, 5, 2, 1\n")
+
+
+def test_a_part_does_not_generate_without_end(monkeypatch):
+    monkeypatch.setattr(abaqus_generated, "_MOST", 10)
+    triangle = "*ELEMENT, TYPE=S3\n1, 1, 5, 101\n*ELGEN\n"
+
+    with pytest.raises(MeshError, match=r":11: \*ELGEN makes 4 nodes or elements; a part may have"):
+        deck(f"{SQUARE}{triangle}1, 4, 0, 100\n1, 4, 0, 200\n1, 4, 0, 300\n")

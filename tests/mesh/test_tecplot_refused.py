@@ -49,6 +49,7 @@ def tecplot(text):
         ("F=FEPOINT", "F=FEPOINT VARLOCATION=([3]=CELLCENTERED)", ":2: values at cell centres in"),
         ("F=FEPOINT", "VARLOCATION=([4]=NODAL)", ":2: .* is no list of variables; write it as"),
         ("F=FEPOINT", "VARLOCATION=([1-x]=NODAL)", ":2: VARLOCATION=.* is no list of variables"),
+        ("F=FEPOINT", "VARLOCATION=([1,1]=NODAL)", ":2: VARLOCATION=.* is no list of variables"),
         ("F=FEPOINT", "VARLOCATION=([1]=THERE)", ":2: VARLOCATION=.* is no list of variables"),
         ("F=FEPOINT", "VARSHARELIST=([1]=1)", ":2: a zone shares what zone '1' has, which does"),
         ("F=FEPOINT", "D=(1)", ":2: a zone shares what zone '' has, which does not stand before"),

@@ -36,13 +36,15 @@ def cells_of(source: Source, scopes: list[Scope]) -> CellPart:
         numbers, places = numbers[last], places[last]
     elements = [each for scope in scopes for each in scope.elements]
     kept = _kept(source, elements)
+    order = np.argsort(numbers, kind="stable")
+    ordered = numbers[order]
     blocks = []
     for block, rows in zip(elements, kept, strict=True):
         if block.shape.is_axisymmetric:
             source.note("axisymmetric elements taken as the flat section that they are, not turned")
         cell = block.shape.cell
         if cell is not None and rows.any():
-            blocks.append(Block(cell, _points_of(_rows(block, rows), numbers)))
+            blocks.append(Block(cell, _points_of(_rows(block, rows), order, ordered)))
     return CellPart(scopes[0].name, places, blocks)
 
 
@@ -86,10 +88,16 @@ def _rows(block: Elements, rows: NDArray[np.bool_]) -> Elements:
     return block._replace(numbers=columns[0], nodes=columns[1], lines=columns[2])
 
 
-def _points_of(block: Elements, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the rows of an element's nodes."""
-    order = np.argsort(numbers, kind="stable")
-    ordered = numbers[order]
+def _points_of(
+    block: Elements, order: NDArray[np.int64], ordered: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Return the rows of elements' nodes.
+
+    Args:
+        block: the elements.
+        order: (V,), rows of the nodes in the order of their numbers.
+        ordered: (V,), the numbers in this order.
+    """
     at = np.searchsorted(ordered, block.nodes)
     there = at < len(ordered)
     there[there] = ordered[at[there]] == block.nodes[there]

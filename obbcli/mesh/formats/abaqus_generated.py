@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from obbcli.mesh.formats.abaqus_scope import Scope
     from obbcli.mesh.formats.abaqus_sections import Section
 
-#: Most nodes or elements that one keyword makes: a slip of a key must not fill the memory.
-_MOST = 20_000_000
+#: Most nodes and elements that a part may generate: a slip of a key must not fill the memory.
+_MOST = 5_000_000
 #: Radii of an arc's ends may differ by so much, as coordinates are rounded when they are written.
 _ROUND = 1e-4
 _WRITE_OUT = "write the nodes and elements out, each with its number"
@@ -56,7 +56,7 @@ def generate_nodes(scope: Scope, section: Section) -> None:
         if intervals < 1 or first + intervals * step != last:
             fault = f"*NGEN from node {first} to {last} by steps of {step} meets no number"
             raise section.source.error(fault, "write whole steps", at=line)
-        _check_size(section, line, intervals)
+        _check_size(scope, section, line, intervals)
         a, b = _place(scope, section, line, first), _place(scope, section, line, last)
         share = np.arange(intervals + 1)[:, np.newaxis] / intervals
         numbers.append(first + step * np.arange(intervals + 1, dtype=np.int64))
@@ -94,7 +94,7 @@ def fill_nodes(scope: Scope, section: Section) -> None:
         if len(a) != len(b) or intervals < 1:
             fault = f"*NFILL between {len(a)} and {len(b)} nodes, in {intervals} intervals"
             raise source.error(fault, "bound it by two sets of as many nodes", at=line)
-        _check_size(section, line, intervals * len(a))
+        _check_size(scope, section, line, intervals * len(a))
         start, end = _places(scope, section, line, a), _places(scope, section, line, b)
         for k in range(1, intervals):
             places = start + (end - start) * (k / intervals)
@@ -115,6 +115,7 @@ def copy_nodes(scope: Scope, section: Section) -> None:
     if "SHIFT" not in section.options:
         raise section.source.error("*NCOPY without SHIFT is not read", _WRITE_OUT, at=line)
     old = members(scope.sets, section, line, _named(section, "OLDSET"), {})
+    _check_size(scope, section, line, max(len(old), 1))
     times = _option(section, "MULTIPLE") if "MULTIPLE" in section.options else 1
     places = placement(section, times).placed(_places(scope, section, line, old))
     scope.add_nodes(old + added, places, section.label("NEWSET"))
@@ -140,7 +141,7 @@ def generate_elements(scope: Scope, section: Section) -> None:
             if count == 1:
                 continue
             node_step, step = _given(section, line, *step_words)
-            _check_size(section, line, count * len(numbers))
+            _check_size(scope, section, line, count * len(numbers))
             k = np.arange(count, dtype=np.int64)[:, np.newaxis]
             numbers = (numbers + k * step).reshape(-1)
             nodes = (nodes + k[:, np.newaxis] * node_step).reshape(len(numbers), nodes.shape[1])
@@ -161,11 +162,13 @@ def copy_elements(scope: Scope, section: Section) -> None:
     line = str(section.line)
     step, node_step = _option(section, "ELEMENTSHIFT"), _option(section, "SHIFTNODES")
     name = _named(section, "OLDSET")
-    for number in members(scope.element_sets, section, line, name, {}).tolist():
+    numbers = members(scope.element_sets, section, line, name, {})
+    _check_size(scope, section, line, max(len(numbers), 1))
+    for number in numbers.tolist():
         block, row = _element(scope, section, line, number)
-        numbers, nodes = block.numbers[row : row + 1] + step, block.nodes[row : row + 1] + node_step
+        copy, nodes = block.numbers[row : row + 1] + step, block.nodes[row : row + 1] + node_step
         lines = np.full(1, section.line, dtype=np.int64)
-        made = Elements(block.section, block.shape, numbers, nodes, lines)
+        made = Elements(block.section, block.shape, copy, nodes, lines)
         scope.add_elements(made, section.label("NEWSET"))
 
 
@@ -247,9 +250,10 @@ def _named(section: Section, option: str) -> bytes:
     return section.label(option).encode("latin-1", "replace")
 
 
-def _check_size(section: Section, line: str, size: int) -> None:
-    if not 0 < size <= _MOST:
-        fault = f"*{section.keyword} makes {size} nodes or elements, 1 to {_MOST} are read"
+def _check_size(scope: Scope, section: Section, line: str, size: int) -> None:
+    scope.generated += size
+    if size < 1 or scope.generated > _MOST:
+        fault = f"*{section.keyword} makes {size} nodes or elements; a part may have {_MOST}"
         raise section.source.error(fault, "check its numbers", at=line)
 
 

@@ -62,6 +62,7 @@ class Scope:
         self.sets: dict[str, list[NDArray[np.int64] | Section]] = {}
         self.element_sets: dict[str, list[NDArray[np.int64] | Section]] = {}
         self.system: LocalSystem | None = None
+        self.generated = 0
         self._places: dict[int, NDArray[np.float64]] = {}
         self._elements: dict[int, tuple[Elements, int]] = {}
         self._indexed = 0, 0

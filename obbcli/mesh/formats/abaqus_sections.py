@@ -198,16 +198,18 @@ def _text(source: Source) -> bytes:
 def _split(source: Source) -> Iterator[Section]:
     """Yield a file's keywords in order."""
     data = _text(source)
-    found = list(_KEYWORD.finditer(data))
-    head = _COMMENT.sub(b"", data[: found[0].start()] if found else data)
+    found = _KEYWORD.finditer(data)
+    match = next(found, None)
+    head = _COMMENT.sub(b"", data[: match.start()] if match else data)
     if head.strip():
         line = head[: len(head) - len(head.lstrip())].count(b"\n") + 1
         fault = f"'{shown(head.split()[0])}' before the first keyword"
         remedy = "an Abaqus deck begins with a keyword such as *HEADING or *NODE"
         raise source.error(fault, remedy, at=str(line))
     line, seen = 1, 0
-    ends = [*(match.start() for match in found[1:]), len(data)]
-    for match, end in zip(found, ends, strict=False):
+    while match is not None:
+        after = next(found, None)
+        end = after.start() if after else len(data)
         line += data.count(b"\n", seen, match.start())
         seen = match.start()
         words, start = _continued(data, match, end)
@@ -217,6 +219,7 @@ def _split(source: Source) -> Iterator[Section]:
             lines = _COMMENT.sub(b"", lines)
         first = line + data.count(b"\n", match.start(), start)
         yield Section(source, line, keyword, options, lines, first)
+        match = after
 
 
 def _continued(data: bytes, match: re.Match[bytes], end: int) -> tuple[str, int]:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     #: The pieces that make up each set, by its name in capitals.
     Sets = Mapping[str, Sequence[NDArray[np.int64] | Section]]
 
+#: How many sets may lie in one another.
+_DEEPEST = 100
 #: Most numbers that one line generates: a slip of a key must not fill the memory.
 _MOST = 20_000_000
 
@@ -49,7 +51,8 @@ def members(
     found = known.get(key)
     if found is not None:
         return found
-    if key not in sets or key in known:
+    depth = sum(each is None for each in known.values())
+    if key not in sets or key in known or depth > _DEEPEST:
         fault = f"*{section.keyword} names the set '{shown(name)}', which is not defined before it"
         raise section.source.error(fault, "define it by its numbers", at=line)
     known[key] = None

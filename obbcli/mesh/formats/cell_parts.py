@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli.mesh.formats.cell_surface import surface
+from obbcli.mesh.formats.cell_surface import Block, surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from obbcli.mesh.formats.cell_surface import Block
     from obbcli.mesh.source import MeshArrays, Source
 
 
@@ -42,15 +41,20 @@ def joined_surface(source: Source, parts: Sequence[CellPart]) -> MeshArrays:
     """
     points = np.concatenate([np.zeros((0, 3)), *(part.points for part in parts)])
     ends = np.cumsum([len(part.points) for part in parts])
-    blocks, cells = [], 0
+    # A block a kind: blocks cost more than cells where a file has thousands of them.
+    kinds: dict[str, list[tuple[NDArray[np.int64], NDArray[np.int64]]]] = {}
+    cells = 0
     for part, end in zip(parts, ends.tolist(), strict=True):
-        first = end - len(part.points)
-        here = cells
+        here, first = cells, end - len(part.points)
         for block in part.blocks:
-            places = np.arange(len(block.nodes)) + cells - here
+            places = np.arange(cells - here, cells - here + len(block.nodes))
             places = (places if block.places is None else block.places) + here
-            blocks.append(block._replace(nodes=block.nodes + first, places=places))
+            kinds.setdefault(block.kind, []).append((block.nodes + first, places))
             cells += len(block.nodes)
+    blocks = []
+    for kind, each in kinds.items():
+        nodes, place = zip(*each, strict=True)
+        blocks.append(Block(kind, np.concatenate(nodes), np.concatenate(place)))
     # One call, so that notes count all parts; it lists the flat cells of all of them first.
     triangles = surface(source, points, blocks)
     part_of = np.searchsorted(ends, triangles[:, 0], side="right")

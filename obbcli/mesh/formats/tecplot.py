@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 #: What stands around the letter in the names of coordinates: units, the word itself.
 _DECORATION = re.compile(r"[\[(<].*?[\])>]|coordinates?|coord|position|[\s_-]")
 
+#: Tecplot itself takes no more.
+_MOST_VARIABLES = 32_767
 _EMPTY = Numbers({}, None)
 
 
@@ -84,6 +86,9 @@ def _zones(source: Source, text: bytes) -> tuple[list[Zone], list[str]]:
         elif record.kind == "FILETYPE" and b"SOLUTION" in text[record.start : record.end].upper():
             fault = "is a Tecplot solution, whose grid lies in another file"
             raise source.error(fault, "save grid and solution in one file", at=str(record.line))
+    if len(names) > _MOST_VARIABLES:
+        fault = f"has {len(names)} variables, at most {_MOST_VARIABLES} are read"
+        raise source.error(fault, "save the coordinates alone")
     if not zones:
         remedy = "a Tecplot file has VARIABLES and a ZONE; other formats have other suffixes"
         raise source.error("has no ZONE, which a mesh in a Tecplot file has", remedy)

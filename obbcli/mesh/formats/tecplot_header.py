@@ -179,11 +179,15 @@ def _choices(
     if text is None:
         return
     inner, at = text.strip()[1:-1].rstrip(), 0
+    seen: set[int] = set()
     while at < len(inner):
         match = _CHOICE.match(inner, at)
         if match is None:
             raise _no_list(source, zone, key)
         for variable in _range(source, zone, key, match[1], width):
+            if variable in seen:
+                raise _no_list(source, zone, key)
+            seen.add(variable)
             yield variable, match[2] or ""
         at = match.end()
 
