@@ -146,6 +146,11 @@ def test_a_card_that_is_taken_off_the_list_of_passed_ones_is_refused(monkeypatch
             f"{TETRA}CTRIA3,2,1,1,2,3,,,,4\n",
             r"<stdin>:6: has '4' behind its 8 fields; put it on a line of its own",
         ),
+        (
+            f"{TETRA}CQUAD8  2       1       1       2       3       4\n        1       2,\n",
+            r"<stdin>:7: has '1       2' before its first comma, expected one name or none",
+        ),
+        (f"{TETRA}CQUAD8,2,1,1,2,3,4\n  1,2\n", r"<stdin>:7: has '1' before its first comma"),
         (f"{TETRA}GRID*,9,,1.,2.,3.\n", r"<stdin>:6: has '3.' behind its 4 fields"),
         (
             f"{TETRA}GRID*   9                               1.              2.\n        3.\n",

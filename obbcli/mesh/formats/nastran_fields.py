@@ -99,8 +99,8 @@ def _split_card(
             break
         free = b"," in text
         found, is_large = _free(text) if free else _separated(text)
-        if free and len(found) > (4 if is_large else 8):
-            _check_rest(deck, int(numbers[row]), found, 4 if is_large else 8)
+        if free:
+            _check_ends(deck, int(numbers[row]), text, found, 4 if is_large else 8)
         if halves % 2 and not is_large:
             raise deck.error(
                 int(numbers[row]),
@@ -129,12 +129,20 @@ def _free(text: bytes) -> tuple[list[bytes], bool]:
     return items[1:], b"*" in items[0]
 
 
-def _check_rest(deck: Deck, number: int, items: list[bytes], per_line: int) -> None:
-    """Refuse data behind the last field, where the line that continues this one may be named."""
-    behind = [item.strip() for item in items[per_line:]]
-    if any(behind[1:]) or _is_number(behind[0]):
-        fault = f"has '{shown(b','.join(behind))}' behind its {per_line} fields"
-        raise deck.error(number, fault, "put it on a line of its own that begins with + or *")
+def _check_ends(deck: Deck, number: int, text: bytes, items: list[bytes], per_line: int) -> None:
+    """Refuse data before the first comma, and behind the last field.
+
+    There a line has its name, and the name of the line that continues it.
+    """
+    name = text[: text.index(b",")]
+    if len(name.split()) > 1 or _is_number(name.strip()):
+        fault = f"has '{shown(name.strip())}' before its first comma, expected one name or none"
+        raise deck.error(number, fault, "separate all fields by commas, or none")
+    if len(items) > per_line:
+        behind = [item.strip() for item in items[per_line:]]
+        if any(behind[1:]) or _is_number(behind[0]):
+            fault = f"has '{shown(b','.join(behind))}' behind its {per_line} fields"
+            raise deck.error(number, fault, "put it on a line of its own that begins with + or *")
 
 
 def _is_number(word: bytes) -> bool:
