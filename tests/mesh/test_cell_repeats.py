@@ -79,7 +79,8 @@ def test_a_nastran_deck_may_name_one_body_twice():
 
 
 def test_other_formats_may_too(tmp_path):
-    path = write(tmp_path / "a.msh", [("hexahedron", np.array([HEXAHEDRON, HEXAHEDRON]))])
+    cells = [("hexahedron", np.array([HEXAHEDRON, HEXAHEDRON]))]
+    path = write(tmp_path / "a.msh", cells, file_format="gmsh")
 
     assert load_mesh(path).is_watertight
     assert (

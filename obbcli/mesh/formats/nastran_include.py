@@ -20,6 +20,8 @@ _DEEPEST = 20
 #: is bounded by a multiple of what the files hold, so that no few lines fill the memory.
 _TIMES = 16
 _LEAST = 1 << 26
+#: So many letters of a name are shown.
+_SHOWN = 100
 #: Lines that one name of a file may take.
 _NAME_LINES = 64
 
@@ -117,7 +119,9 @@ class _Reading:
         file = self._found(source, name, line)
         opened = (*above, _real_path(source))
         if _real_path(file) in opened:
-            raise source.error(f"INCLUDE '{name}' includes itself", "take it out", at=str(line))
+            raise source.error(
+                f"INCLUDE '{_shown(name)}' includes itself", "take it out", at=str(line)
+            )
         if len(opened) > _DEEPEST:
             raise source.error(f"INCLUDE goes deeper than {_DEEPEST} files", at=str(line))
         yield from self.parts(file, opened)
@@ -125,22 +129,22 @@ class _Reading:
     def _found(self, source: Source, name: str, line: int) -> Source:
         """Return the file that a statement names."""
         if self._deck.path is None or source.path is None:
-            fault = f"INCLUDE '{name}' names a file, and a stream lies in no folder"
+            fault = f"INCLUDE '{_shown(name)}' names a file, and a stream lies in no folder"
             raise source.error(fault, "name the deck's file instead of a stream", at=str(line))
         plain = name.replace("\\", "/")
         if plain.startswith("/") or ":" in plain or ".." in plain.split("/"):
             raise source.error(
-                f"INCLUDE '{name}' is not a path at or below the deck's folder",
+                f"INCLUDE '{_shown(name)}' is not a path at or below the deck's folder",
                 "copy the file there, and name it from there",
                 at=str(line),
             )
         root = self._deck.path.parent
         for folder in dict.fromkeys((source.path.parent, root)):
             path = folder / plain
-            if path.is_file():
+            if _is_file(path):
                 return self._source_of(source, path, line)
         raise source.error(
-            f"INCLUDE '{name}': there is no such file beside it",
+            f"INCLUDE '{_shown(name)}': there is no such file beside it",
             f"copy the file to {root}, its name as it is written here",
             at=str(line),
         )
@@ -148,7 +152,7 @@ class _Reading:
     def _source_of(self, source: Source, path: Path, line: int) -> Source:
         real = path.resolve()
         if not real.is_relative_to(_real_path(self._deck).parent):
-            fault = f"INCLUDE '{path.name}' leads out of the deck's folder"
+            fault = f"INCLUDE '{_shown(path.name)}' leads out of the deck's folder"
             raise source.error(fault, "copy the file there", at=str(line))
         if real not in self._read:
             self._read[real] = read_source(path)
@@ -189,6 +193,19 @@ def _name_after(source: Source, text: bytes, start: int, line: int) -> tuple[str
     except UnicodeDecodeError as fault:
         words = f"INCLUDE's name '{shown(name)}' is not UTF-8"
         raise source.error(words, "give the file a plain name", at=str(line)) from fault
+
+
+def _shown(name: str) -> str:
+    """Return a file's name as errors show it: of a long one, the beginning."""
+    return name if len(name) <= _SHOWN else f"{name[:_SHOWN]}..."
+
+
+def _is_file(path: Path) -> bool:
+    """Return whether a file is there; a name that no system takes is none."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _real_path(source: Source) -> Path:
