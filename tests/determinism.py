@@ -100,7 +100,7 @@ class Bench:
     def add_large(self) -> None:
         """Write a mesh of which several threads make the first boxes."""
         import numpy as np
-        from tree_meshes import bumpy_grid
+        from meshes.nasty import bumpy_grid
 
         vertices, triangles = bumpy_grid(LARGE_CELLS)
         fields = [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness import OURS, Row, alternate, resident_bytes
+from meshes.surfaces import Surface, blob
 from peers import CONTESTANTS, Contestant
-from scene_surfaces import Surface, blob
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import peers
-from distance_claims import assert_bounds_hold
+from claims.distance import assert_bounds_hold
 from harness import OURS, Row, alternate
-from oracles_mesh import mesh_distance_squared
-from scenes import pairs
+from oracles.mesh import mesh_distance_squared
+from scenes.pairs import pairs
 
 import obbcli
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from scenes import Pair
+    from scenes.pairs import Pair
 
 SIZES = {10_000: 31, 100_000: 15}
 QUICK_SIZES = {10_000: 9}

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from meshes.surfaces import Surface
     from moving_peers import MovingPeer
     from moving_sets import Moving
-    from scene_surfaces import Surface
 
 QUERIES = 200
 QUICK_QUERIES = 10

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from harness import OURS, Row, alternate, markdown
 from moving_sets import DURATION, MOTIONS, OUTCOMES, mesh_pairs, normalized, questions
-from scenes import pairs
+from scenes.pairs import pairs
 
 import obbcli
 from obbcli.tree.options import Fit, Split
@@ -23,8 +23,8 @@ from obbcli.tree.options import Fit, Split
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from meshes.surfaces import Surface
     from moving_sets import Moving
-    from scene_surfaces import Surface
 
     Options = tuple[str, str]
     # Which question, and ask it of trees that were built so.

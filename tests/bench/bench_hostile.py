@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 from harness import OURS, Row, Timing, markdown, time_text
-from hostile_meshes import HOSTILE, HostilePair
+from meshes.hostile import HOSTILE, HostilePair
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

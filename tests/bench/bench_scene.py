@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from harness import OURS, Row, Timing, alternate
-from scene_surfaces import blob
+from meshes.surfaces import blob
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

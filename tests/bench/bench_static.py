@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import peer_counts
 from harness import OURS, Row, alternate
-from oracles import triangles_intersect
-from oracles_mesh import mesh_pairs
+from oracles.mesh import mesh_pairs
+from oracles.still import triangles_intersect
 from peers import CONTESTANTS, Query
-from scenes import POSE_CLASSES, pairs
+from scenes.pairs import POSE_CLASSES, pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from scenes import Pair
+    from scenes.pairs import Pair
 
 TRUTH_TRIANGLES = 500
 # Shorter than a scheduler's slice, so that on a busy machine most samples are whole.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from harness import OURS, Row, alternate, time_text
-from scene_surfaces import blob
+from meshes.surfaces import blob
 
 import obbcli
 from obbcli.sweeps import cluster, stream

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from harness import OURS, Row, alternate
-from scenes import POSE_CLASSES
+from scenes.pairs import POSE_CLASSES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

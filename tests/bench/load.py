@@ -14,7 +14,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
-from load_questions import TRIANGLES, Load, run
+from asking.load_questions import TRIANGLES, Load, run
 
 
 def told(load: Load) -> str:

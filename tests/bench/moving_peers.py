@@ -16,7 +16,7 @@ from peers import Fcl
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from scene_surfaces import Surface
+    from meshes.surfaces import Surface
 
 LOOP_STEPS = 100
 # Of the size: where the advancement on distances stops, and gives up after so many distances.

@@ -12,8 +12,8 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scene_surfaces import Surface, blob
-from scenes import random_rotation
+from meshes.surfaces import Surface, blob
+from scenes.pairs import random_rotation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -14,16 +14,16 @@ from harness import OURS
 from moving_ours import TOLERANCES, YES_NO, our_bodies
 from moving_peers import fcl_collides, fcl_distance
 from moving_sets import DURATION
-from oracles import root
-from oracles_distance import point_triangle_distance_squared
+from oracles.distance import point_triangle_distance_squared
+from oracles.still import root
 
 import obbcli
 from obbcli import Status
 
 if TYPE_CHECKING:
+    from meshes.surfaces import Surface
     from moving_peers import Models
     from moving_sets import Moving
-    from scene_surfaces import Surface
 
 
 SAMPLES = 64

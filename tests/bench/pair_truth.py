@@ -1,7 +1,7 @@
 """Verdicts and times of many pairs by NumPy, in code of its own: what the sweep believes.
 
 Whole numbers below 8 give projections below 2^17, so that quotients of them compare exactly as
-doubles; other pairs are decided here only where a wide margin decides, the rest by `oracles`.
+doubles; other pairs are decided here only where a wide margin decides, the rest by `oracles.still`.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from oracles_exact import Box, box_hull, triangle_hull
-from oracles_moving import contact_interval
+from oracles.exact import Box, box_hull, triangle_hull
+from oracles.moving import contact_interval
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

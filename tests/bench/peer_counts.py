@@ -77,7 +77,7 @@ def count(triangles: int) -> dict[str, dict[str, int]]:
 def main(shim_path: str, triangles: int) -> None:
     """Count in a process that loaded the shim first, and print the counts as JSON."""
     from peers import Coal, Fcl
-    from scenes import pairs
+    from scenes.pairs import pairs
 
     shim = ctypes.CDLL(shim_path)
     counts: dict[str, dict[str, int]] = {}

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from meshes.surfaces import Surface
     from numpy.typing import NDArray
-    from scene_surfaces import Surface
-    from scenes import Pair
+    from scenes.pairs import Pair
 
 # More contacts than any scene here has, as the peers want a limit.
 MANY_CONTACTS = 10_000_000

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from cube_files import cube, obj, stl
-from scene_of_cubes import SCENE
-from schemas import require_valid, require_valid_lines
+from claims.schemas import require_valid, require_valid_lines
+from mesh_files.cube_files import cube, obj, stl
+from scenes.cubes import SCENE
 
 from obbcli.cli import main
 from obbcli.study.tradeoff import measuring

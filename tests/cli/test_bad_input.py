@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from cube_files import cube, obj, stl
+from mesh_files.cube_files import cube, obj, stl
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 GOOD = stl(cube())

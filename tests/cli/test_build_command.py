@@ -7,7 +7,7 @@ import json
 import sys
 
 import pytest
-from cube_files import as_input, cube, stl
+from mesh_files.cube_files import as_input, cube, stl
 
 from obbcli import ObbTree
 

@@ -10,7 +10,7 @@ import sys
 from itertools import product
 
 import pytest
-from cube_files import all_pairs, as_input, cube, obj, stl
+from mesh_files.cube_files import all_pairs, as_input, cube, obj, stl
 
 from obbcli import Accuracy, __version__
 

@@ -6,7 +6,7 @@ import json
 from dataclasses import fields
 
 import pytest
-from cube_files import as_input, cube, obj
+from mesh_files.cube_files import as_input, cube, obj
 
 from obbcli import Accuracy, __version__
 

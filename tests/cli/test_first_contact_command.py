@@ -8,7 +8,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from cube_files import as_input
+from mesh_files.cube_files import as_input
 
 from obbcli import Accuracy, FirstContact
 

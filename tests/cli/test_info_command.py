@@ -7,7 +7,7 @@ import json
 import math
 
 import pytest
-from cube_files import CUBE_FACES, as_input, cube, obj
+from mesh_files.cube_files import CUBE_FACES, as_input, cube, obj
 
 
 def test_info_of_a_mesh(here, obbtree):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 import pytest
-from schemas import require_valid
+from claims.schemas import require_valid
 
 import obbcli
 from obbcli import MeshError

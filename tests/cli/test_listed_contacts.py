@@ -6,7 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from cube_files import all_pairs, cube, obj
+from mesh_files.cube_files import all_pairs, cube, obj
 
 from obbcli import Body, Contact, Motion, ObbTree, contacts, first_contact
 from obbcli.questions.search import Search

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from scene_of_cubes import SCENE, add
+from scenes.cubes import SCENE, add
 
 import obbcli.scene.first_contacts
 from obbcli import ObbTree

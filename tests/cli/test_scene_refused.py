@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING
 
 import pytest
-from scene_of_cubes import SCENE
+from scenes.cubes import SCENE
 
 from obbcli import ObbTree
 

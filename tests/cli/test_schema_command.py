@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from claims.schemas import name_of, require_valid, require_valid_lines
 from jsonschema import Draft202012Validator
-from schemas import name_of, require_valid, require_valid_lines
 
 from obbcli.cli.app import app
 from obbcli.report.schema import NAMES, schema_of, schema_of_all

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from cube_files import CUBE_FACES, cube, obj
+from mesh_files.cube_files import CUBE_FACES, cube, obj
 
 from obbcli import Mesh, ObbTree
 

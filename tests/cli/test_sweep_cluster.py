@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from cube_files import cube, obj, stl
+from mesh_files.cube_files import cube, obj, stl
 
 from obbcli import Accuracy, ObbError, ObbTree, __version__, load_mesh
 from obbcli.cli import main

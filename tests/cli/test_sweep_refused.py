@@ -7,7 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 import pytest
-from cube_files import cube, obj
+from mesh_files.cube_files import cube, obj
 
 if TYPE_CHECKING:
     from pathlib import Path

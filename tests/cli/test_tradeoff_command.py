@@ -7,7 +7,7 @@ import shlex
 from dataclasses import replace
 
 import pytest
-from turning_cubes import TURN, TURN_TIME, asked
+from scenes.turning_cubes import TURN, TURN_TIME, asked
 
 import obbcli
 from obbcli.study.tradeoff.judge import Judge

@@ -8,7 +8,7 @@ import struct
 from xml.etree import ElementTree
 
 import pytest
-from turning_cubes import TURN, asked
+from scenes.turning_cubes import TURN, asked
 
 
 @pytest.mark.needs("matplotlib")

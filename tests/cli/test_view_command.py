@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from png_files import pixels_of
+from claims.png_files import pixels_of
 
 from obbcli import ObbTree
 from obbcli.cli.commands import view

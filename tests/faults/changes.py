@@ -16,8 +16,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cube_files import CUBE_FACES, cube, stl
 from faults.world import NEVER, Ended, calls_of, fill, finish, start, told_in_one_line
+from mesh_files.cube_files import CUBE_FACES, cube, stl
 
 from obbcli import Mesh, ObbTree, load_mesh
 

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cube_files import CUBE_FACES, cube, obj, stl
+from mesh_files.cube_files import CUBE_FACES, cube, obj, stl
 
 from obbcli import Mesh, ObbTree
 from obbcli.files import TEMPORARY

@@ -10,13 +10,20 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
-from deck_files import DECKS
 from fuzz.kinds import Target, require
-from gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned, with_fallback
-from gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
-from nastran_decks import SEEDS
-from plain_files import FILES
+from mesh_files.cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
+from mesh_files.deck_files import DECKS
+from mesh_files.gltf_documents import (
+    draco_square,
+    instanced,
+    meshopt_square,
+    morphing,
+    skinned,
+    with_fallback,
+)
+from mesh_files.gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
+from mesh_files.nastran_decks import SEEDS
+from mesh_files.plain_files import FILES
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
@@ -98,7 +105,7 @@ def _vtk_files() -> list[tuple[str, bytes]]:
               b"</VTKFile>")]  # fmt: skip
     if not find_spec("vtkmodules"):
         return files
-    import vtk_files
+    from mesh_files import vtk_files
 
     with tempfile.TemporaryDirectory() as folder:
         for make in vtk_files.DATA_SETS.values():

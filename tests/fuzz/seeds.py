@@ -15,8 +15,8 @@ import numpy as np
 CORPUS = Path(__file__).parent / "corpus"
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tree_meshes import bumpy_grid, needles, soup  # noqa: E402
-from tree_oracles import FIXED  # noqa: E402
+from meshes.nasty import bumpy_grid, needles, soup  # noqa: E402
+from oracles.tree_files import FIXED  # noqa: E402
 
 from obbcli import Mesh, ObbTree  # noqa: E402
 

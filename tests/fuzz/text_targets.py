@@ -11,8 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cube_files import cube, stl
 from fuzz.kinds import Target, require
+from mesh_files.cube_files import cube, stl
 
 from obbcli import Scene
 from obbcli.cli import main

@@ -9,9 +9,9 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-import tree_oracles
 from fuzz.kinds import Target, require
-from tree_meshes import bumpy_grid, needles, soup
+from meshes.nasty import bumpy_grid, needles, soup
+from oracles import tree_files as tree_oracles
 
 import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from claims.png_files import pixels_of
 from manual.consoles import matches, normalised, run, steps
 from manual.pages import ROOT, Block, blocks
-from png_files import pixels_of
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from claims.png_files import pixels_of
 from manual.pages import PAGES, ROOT, links
-from png_files import pixels_of
 
 SAMPLES = ROOT / "sample_meshes"
 SHOWN = {

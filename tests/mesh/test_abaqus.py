@@ -7,8 +7,8 @@ import math
 import meshio
 import numpy as np
 import pytest
-from abaqus_decks import PART, TETRA, TETRA_NODES, corners, deck, volume
-from cell_files import POINTS, write
+from mesh_files.abaqus_decks import PART, TETRA, TETRA_NODES, corners, deck, volume
+from mesh_files.cell_files import POINTS, write
 
 from obbcli.mesh import load_mesh
 

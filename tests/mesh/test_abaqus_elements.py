@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from abaqus_decks import deck, volume
+from mesh_files.abaqus_decks import deck, volume
 
 from obbcli.errors import MeshError
 from obbcli.mesh.formats.abaqus_elements import shape_of

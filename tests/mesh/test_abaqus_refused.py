@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from abaqus_decks import PART, TETRA, TETRA_NODES, corners, deck
+from mesh_files.abaqus_decks import PART, TETRA, TETRA_NODES, corners, deck
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

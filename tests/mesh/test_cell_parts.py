@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from cell_files import CUBE
+from mesh_files.cell_files import CUBE
 
 from obbcli.mesh.formats.cell_parts import CellPart, joined_surface
 from obbcli.mesh.formats.cell_surface import Block, surface

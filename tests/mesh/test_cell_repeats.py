@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cell_files import POINTS, write
-from nastran_decks import CUBE, TETRA
+from mesh_files.cell_files import POINTS, write
+from mesh_files.nastran_decks import CUBE, TETRA
 
 from obbcli.mesh import load_mesh, load_mesh_bytes
 from obbcli.mesh.formats.cell_surface import Block, surface

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from cell_files import CUBE, HEXAHEDRON, POINTS, SURFACE_KINDS, VOLUME_KINDS, write
+from mesh_files.cell_files import CUBE, HEXAHEDRON, POINTS, SURFACE_KINDS, VOLUME_KINDS, write
 
 from obbcli.errors import MeshError
 from obbcli.mesh import Mesh, load_mesh

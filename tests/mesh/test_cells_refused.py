@@ -9,7 +9,7 @@ import sys
 import meshio
 import numpy as np
 import pytest
-from cell_files import CUBE, VOLUME_KINDS, write
+from mesh_files.cell_files import CUBE, VOLUME_KINDS, write
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

@@ -9,7 +9,7 @@ import struct
 import numpy as np
 import pytest
 import trimesh
-from gltf_files import DOCUMENT, INDICES, POSITIONS, SQUARE, document, load
+from mesh_files.gltf_files import DOCUMENT, INDICES, POSITIONS, SQUARE, document, load
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

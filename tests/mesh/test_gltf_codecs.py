@@ -8,8 +8,8 @@ import sys
 
 import numpy as np
 import pytest
-from gltf_documents import TRIANGLES, draco_square, meshopt_square, with_fallback
-from gltf_files import SQUARE
+from mesh_files.gltf_documents import TRIANGLES, draco_square, meshopt_square, with_fallback
+from mesh_files.gltf_files import SQUARE
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

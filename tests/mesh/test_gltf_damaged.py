@@ -8,8 +8,8 @@ import re
 
 import numpy as np
 import pytest
-from gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned
-from gltf_files import DOCUMENT, glb
+from mesh_files.gltf_documents import draco_square, instanced, meshopt_square, morphing, skinned
+from mesh_files.gltf_files import DOCUMENT, glb
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

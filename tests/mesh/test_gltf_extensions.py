@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gltf_documents import instanced
-from gltf_files import SQUARE, document, load, shifted
+from mesh_files.gltf_documents import instanced
+from mesh_files.gltf_files import SQUARE, document, load, shifted
 
 from obbcli.errors import MeshError
 from obbcli.mesh.formats import gltf_extensions

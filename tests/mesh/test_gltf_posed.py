@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gltf_documents import STRIP, morphing, skinned
-from gltf_files import shifted
+from mesh_files.gltf_documents import STRIP, morphing, skinned
+from mesh_files.gltf_files import shifted
 
 from obbcli.errors import MeshError
 from obbcli.mesh.formats.gltf_compressed import DRACO

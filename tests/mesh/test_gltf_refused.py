@@ -6,7 +6,7 @@ import struct
 
 import numpy as np
 import pytest
-from gltf_files import DOCUMENT, INDICES, SQUARE, document, glb, load
+from mesh_files.gltf_files import DOCUMENT, INDICES, SQUARE, document, glb, load
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gltf_files import SQUARE, Builder, document, load, shifted
+from mesh_files.gltf_files import SQUARE, Builder, document, load, shifted
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

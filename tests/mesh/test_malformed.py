@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_files import FACES, FILES, POINTS
+from mesh_files.plain_files import FACES, FILES, POINTS
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

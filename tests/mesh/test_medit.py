@@ -7,7 +7,7 @@ import struct
 import meshio
 import numpy as np
 import pytest
-from cell_files import POINTS, write
+from mesh_files.cell_files import POINTS, write
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nastran_decks import CUBE, FORMS, TETRA, TETRA_GRIDS, TETRA_PLACES, grids
+from mesh_files.nastran_decks import CUBE, FORMS, TETRA, TETRA_GRIDS, TETRA_PLACES, grids
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
-from nastran_decks import CUBE, CUBE_PLACES, grids
+from mesh_files.nastran_decks import CUBE, CUBE_PLACES, grids
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

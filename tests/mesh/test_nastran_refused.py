@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from nastran_decks import FORMS, TETRA, grids
+from mesh_files.nastran_decks import FORMS, TETRA, grids
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

@@ -7,8 +7,8 @@ import random
 
 import numpy as np
 import pytest
-from nastran_decks import grid, grids
-from oracles_nastran import System, basic
+from mesh_files.nastran_decks import grid, grids
+from oracles.nastran import System, basic
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes

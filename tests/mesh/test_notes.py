@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from cell_files import HEXAHEDRON, write
+from mesh_files.cell_files import HEXAHEDRON, write
 
 from obbcli import Mesh, ObbTree, Scene, TreeFileError, load_mesh
 from obbcli.cli import main

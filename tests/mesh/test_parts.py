@@ -8,8 +8,8 @@ import struct
 
 import numpy as np
 import pytest
-from gltf_files import SQUARE, Builder, document, glb, shifted
-from plain_files import FILES, off
+from mesh_files.gltf_files import SQUARE, Builder, document, glb, shifted
+from mesh_files.plain_files import FILES, off
 
 from obbcli import MeshError, load_mesh, load_parts
 from obbcli.mesh.load import read_parts

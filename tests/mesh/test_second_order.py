@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from cell_files import write
+from mesh_files.cell_files import write
 
 from obbcli.mesh import Mesh, load_mesh
 from obbcli.mesh.formats import cell_surface

@@ -5,7 +5,7 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
-from cell_files import CUBE, write
+from mesh_files.cell_files import CUBE, write
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

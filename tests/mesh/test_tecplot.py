@@ -5,8 +5,8 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
-from abaqus_decks import area, volume
-from cell_files import write
+from mesh_files.abaqus_decks import area, volume
+from mesh_files.cell_files import write
 
 from obbcli.mesh import load_mesh, load_mesh_bytes
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
-from abaqus_decks import area, volume
-from cell_files import CUBE, write
-from deck_files import UCD as CELLS
+from mesh_files.abaqus_decks import area, volume
+from mesh_files.cell_files import CUBE, write
+from mesh_files.deck_files import UCD as CELLS
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes

@@ -12,7 +12,7 @@ from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
 
 with contextlib.suppress(ImportError):  # of VTK, which need not be there
-    import vtk_files
+    from mesh_files import vtk_files
 
 pytestmark = pytest.mark.needs("vtk")
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from oracles_exact import Box
-from primitive_shapes import as_shape, distance, size_of
-from strategies import examples
-from strategies_boxes import rotations
-from strategies_moving import (
+from oracles.exact import Box
+from strategies.boxes import rotations
+from strategies.moving import (
     Moving,
     moving_box_pairs,
     moving_triangle_boxes,
     moving_triangle_pairs,
 )
+from strategies.primitive_shapes import as_shape, distance, size_of
+from strategies.still import examples
 
 from obbcli.primitives import Obb, SeparatingAxis, Triangle, first_contact
 

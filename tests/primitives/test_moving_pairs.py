@@ -6,19 +6,19 @@ import math
 from fractions import Fraction
 from typing import Any
 
-import cases
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from primitive_shapes import as_array, as_shape, contact_interval
-from strategies import examples
-from strategies_moving import (
+from scenes import cases
+from strategies.moving import (
     Moving,
     moving_box_pairs,
     moving_triangle_boxes,
     moving_triangle_pairs,
 )
+from strategies.primitive_shapes import as_array, as_shape, contact_interval
+from strategies.still import examples
 
 from obbcli.primitives import PrimitiveContacts, first_contact, intersects
 

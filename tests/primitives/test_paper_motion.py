@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
-from oracles_exact import (
+from oracles.exact import (
     Box,
     Vector,
     complete_axes,
@@ -19,14 +19,14 @@ from oracles_exact import (
     relative_velocity,
     same_unit,
 )
-from primitive_shapes import as_shape, hull_of
-from strategies import examples
-from strategies_moving import (
+from strategies.moving import (
     Moving,
     moving_box_pairs,
     moving_triangle_boxes,
     moving_triangle_pairs,
 )
+from strategies.primitive_shapes import as_shape, hull_of
+from strategies.still import examples
 
 from obbcli.primitives import intersects
 

@@ -6,8 +6,8 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import paper_tables as paper
 import pytest
+from oracles import paper_tables as paper
 
 CLOSE = 1e-9
 RUNS = 40

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-import cases
 import numpy as np
-import oracles
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from oracles_exact import Box
-from primitive_shapes import as_array, as_shape, hull_of
-from strategies import TrianglePair, examples, triangle_pairs
-from strategies_boxes import BoxPair, TriangleBox, box_pairs, triangle_boxes
+from oracles import still as oracles
+from oracles.exact import Box
+from scenes import cases
+from strategies.boxes import BoxPair, TriangleBox, box_pairs, triangle_boxes
+from strategies.primitive_shapes import as_array, as_shape, hull_of
+from strategies.still import TrianglePair, examples, triangle_pairs
 
 from obbcli.primitives import first_contact, intersects
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from random_scenes import CUBE
-from scene_surfaces import sphere
+from meshes.surfaces import sphere
+from scenes.random_scenes import CUBE
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, Scene, SceneBody, Status
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from cube_files import cube, stl
+from mesh_files.cube_files import cube, stl
 
 from obbcli import Accuracy, MeshError, Scene, SceneError
 from obbcli.motion.path import PathMotion

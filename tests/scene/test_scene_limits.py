@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from random_scenes import MESHES, random_scene
+from scenes.random_scenes import MESHES, random_scene
 
 import obbcli.scene.all_contacts
 import obbcli.scene.first_contacts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from random_scenes import MESHES, asked, one_by_one, plain, random_scene
+from scenes.random_scenes import MESHES, asked, one_by_one, plain, random_scene
 
 from obbcli import (
     Accuracy,

@@ -7,8 +7,8 @@ import resource
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from random_scenes import CUBE, MESHES, random_scene
-from scene_surfaces import blob
+from meshes.surfaces import blob
+from scenes.random_scenes import CUBE, MESHES, random_scene
 
 import obbcli.scene.all_contacts
 import obbcli.scene.first_contacts

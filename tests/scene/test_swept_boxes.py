@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from random_scenes import CUBE, MESHES, random_motion
+from scenes.random_scenes import CUBE, MESHES, random_motion
 
 from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose
 from obbcli.motion.path import PathMotion

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from oracles_moving import first_contact_triangles
+from oracles.moving import first_contact_triangles
 
 from obbcli import Accuracy, Body, Mesh, Motion, Status, first_contact
 from obbcli.study.stability.battery import plan

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from cube_files import CUBE_FACES, cube
-from scene_surfaces import sphere
+from mesh_files.cube_files import CUBE_FACES, cube
+from meshes.surfaces import sphere
 
 import obbcli
 from obbcli import Accuracy, Body, Mesh, Motion, MotionError, ObbTree, Pose, Status

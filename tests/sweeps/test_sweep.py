@@ -7,7 +7,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from scene_surfaces import blob, sheet
+from meshes.surfaces import blob, sheet
 
 from obbcli import (
     Accuracy,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from opened_files import data_blocks, flip, save_sheet
+from tree_files.opened import data_blocks, flip, save_sheet
 
 from obbcli import Body, ObbTree, Pose, TreeFileError, sweep
 from obbcli.cli import main

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tree_oracles
 import trimesh
-from opened_files import data_blocks, flip
-from tree_meshes import bumpy_grid, soup
+from meshes.nasty import bumpy_grid, soup
+from oracles import tree_files as tree_oracles
+from tree_files.opened import data_blocks, flip
 
 from obbcli import Mesh, ObbError, ObbTree, TreeFileError
 from obbcli.view.boxes import boxes_of_level, last_boxes_under, tree_picture

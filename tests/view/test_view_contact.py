@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from oracles_rigid import rigid_points
+from oracles.rigid import rigid_points
 
 from obbcli import (
     Accuracy,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from png_files import pixels_of
+from claims.png_files import pixels_of
 
 from obbcli import Mesh, ObbTree
 from obbcli.view.boxes import boxes_of_level, tree_picture
