@@ -38,6 +38,24 @@ def write_whole(path: str | os.PathLike[str], *parts: bytes) -> None:
         raise OSError(fault.errno, fault.strerror, os.fspath(path)) from fault
 
 
+def file_and_pattern(name: str) -> tuple[str, str | None]:
+    """Return the file in `FILE#PATTERN`, and the pattern; a file whose own name holds `#` wins."""
+    cut = len(name) if "#" in name else 0
+    while cut > 0:
+        try:
+            if Path(name[:cut]).exists():
+                return name[:cut], None if cut == len(name) else name[cut + 1 :]
+        except (OSError, ValueError):
+            break  # too long for a name, or with a NUL in it: its reader says so
+        cut = name.rfind("#", 0, cut)
+    return name, None
+
+
+def file_of(name: str | os.PathLike[str]) -> str:
+    """Return the file in `FILE` or `FILE#PATTERN`."""
+    return file_and_pattern(os.fspath(name))[0]
+
+
 def stamp_of(path: str | os.PathLike[str]) -> tuple[int, ...] | None:
     """Return what tells whether a file is still what it was; None where there is none."""
     try:

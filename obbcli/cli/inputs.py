@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.progress import bar
 from obbcli.errors import MeshError
-from obbcli.files import is_device, stamp_of
+from obbcli.files import file_and_pattern, file_of, is_device, stamp_of
 from obbcli.report.record import Source, file_sha256
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ class Input(NamedTuple):
         """
         digest = self.sha256
         if with_sha256 and digest is None:
-            digest = file_sha256(self.name, self.stamp)
-        return Source(self.name, digest, self.tree.triangle_count, self.tree.notes)
+            digest = file_sha256(file_of(self.name), self.stamp)
+        return Source.of(self.name, digest, self.tree)
 
 
 def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
@@ -62,8 +62,9 @@ def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
     if output is None or not output.is_file():
         return
     for name in names:
-        if name != STDIN and Path(name).is_file() and output.samefile(name):
-            fault = f"is the input {name}, which would be lost"
+        file = file_of(name)
+        if name != STDIN and Path(file).is_file() and output.samefile(file):
+            fault = f"is the input {file}, which would be lost"
             raise UsageError(f"-o {output}", fault, "write to another file")
 
 
@@ -99,7 +100,7 @@ def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
     from obbcli.tree.tree import ObbTree
 
     start = time.perf_counter()
-    stamp = stamp_of(name)
+    stamp = stamp_of(file_of(name))
     shape, sha256 = read_shape(name, verify=verify, hashed=hashed)
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
@@ -113,7 +114,7 @@ def read_shape(
     """Return what a file or standard input holds, and the SHA-256 of its bytes where it is known.
 
     Args:
-        name: a path, or `-` for standard input.
+        name: a path, `FILE#PATTERN`, or `-` for standard input.
         verify: whether a tree file's checksums are compared.
         hashed: whether the SHA-256 of a mesh or a stream is found; that of a tree file is not.
 
@@ -127,8 +128,12 @@ def read_shape(
 
     if name == STDIN:
         return _from_bytes(read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
-    path = Path(name)
+    file, pattern = file_and_pattern(name)
+    path = Path(file)
     check_file(path)
+    if pattern is not None:
+        mesh = _selected(path, pattern, hashed=hashed)
+        return mesh, mesh.sha256
     if path.is_fifo():
         with path.open("rb") as pipe:
             data = read_stream(pipe, name)
@@ -137,6 +142,17 @@ def read_shape(
         return ObbTree.open(name, verify=verify), None
     mesh = load_mesh(name, hashed=hashed)
     return mesh, mesh.sha256
+
+
+def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:
+    """Return the parts of a mesh file that a pattern takes, as one mesh."""
+    from obbcli.mesh import load_selection
+
+    if path.is_fifo() or _is_tree(path):
+        fault = f"has no parts to take '{pattern}' from"
+        remedy = "build a tree of the parts: obbtree build 'MESH#PATTERN' -o FILE"
+        raise MeshError(str(path), fault, "name a file" if path.is_fifo() else remedy)
+    return load_selection(path, pattern, hashed=hashed)
 
 
 def _from_bytes(

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
+from obbcli.files import file_and_pattern
 from obbcli.mesh.formats import FORMATS, known_suffixes
 from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning
 from obbcli.mesh.mesh import Mesh, PartRows
@@ -17,7 +18,6 @@ from obbcli.mesh.source import (
     check_file,
     checked_source,
     digest_of,
-    file_and_pattern,
     read_head,
     read_source,
 )
@@ -62,10 +62,9 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
         >>> load_mesh("sample_meshes/gear.stl")
         Mesh(34560 vertices, 11520 triangles, source='gear.stl')
     """
-    if "#" in os.fspath(path):
-        name, pattern = file_and_pattern(os.fspath(path))
-        if pattern is not None:
-            return load_selection(name, pattern, hashed=hashed)
+    name, pattern = file_and_pattern(os.fspath(path))
+    if pattern is not None:
+        return load_selection(name, pattern, hashed=hashed)
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)

@@ -6,13 +6,13 @@ import os
 import stat
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from obbcli.errors import MeshError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
@@ -72,19 +72,6 @@ class Source:
             f"{self.place}:{at}" if at.isdigit() else f"{self.place}: {at}" if at else self.place
         )
         return MeshError(where, fault, remedy)
-
-
-def file_and_pattern(name: str) -> tuple[str, str | None]:
-    """Return the file in `FILE#PATTERN`, and the pattern; a file whose own name holds `#` wins."""
-    cut = len(name)
-    while cut > 0:
-        try:
-            if Path(name[:cut]).exists():
-                return name[:cut], None if cut == len(name) else name[cut + 1 :]
-        except (OSError, ValueError):
-            break  # too long for a name, or with a NUL in it: its reader says so
-        cut = name.rfind("#", 0, cut)
-    return name, None
 
 
 def check_file(path: Path) -> None:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from obbcli.errors import MotionError
+from obbcli.files import file_and_pattern
 from obbcli.mesh.load import mesh_of, read_parts
 from obbcli.mesh.parts.placed import placed
 from obbcli.mesh.parts.selection import selected
-from obbcli.mesh.source import file_and_pattern
 from obbcli.motion.pose import Pose
 
 if TYPE_CHECKING:

@@ -58,7 +58,7 @@ def build_record(
 def _source(name: str, file: Built | ObbError) -> Source:
     if isinstance(file, ObbError):
         return Source(name, None, None)
-    return Source(name, file.tree.source_sha256, file.tree.triangle_count, file.tree.notes)
+    return Source.of(name, file.tree.source_sha256, file.tree)
 
 
 def _error(name: str, file: Built | ObbError) -> Record | None:

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 from obbcli.answers.status import Status
 from obbcli.report.record import answer_document
-from obbcli.report.rows import as_sampled, contained_rows, cost_rows, source_rows, why_open
+from obbcli.report.rows import (
+    as_sampled,
+    contained_rows,
+    cost_rows,
+    part_rows,
+    source_rows,
+    why_open,
+)
 from obbcli.report.table import Table, count, length
 
 if TYPE_CHECKING:
@@ -65,6 +72,7 @@ def collide_tables(record: Record) -> list[Table]:
         of_a, of_b = result["witness"]
         meets = "is within the clearance of" if record["accuracy"]["clearance"] else "meets"
         rows.append(("witness", f"triangle {of_a} of A {meets} triangle {of_b} of B"))
+    rows += part_rows(result)
     tables = [Table([*rows, *cost_rows(record["stats"])])]
     if "pairs" in result:
         tables.append(_pairs_table(result))

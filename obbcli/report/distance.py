@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.report.record import answer_document
-from obbcli.report.rows import cost_rows, source_rows
+from obbcli.report.rows import cost_rows, part_rows, source_rows
 from obbcli.report.table import Table, point
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def distance_tables(record: Record) -> list[Table]:
         ("point of A", f"{point(result['point_a'])} (triangle {result['triangle_a']})"),
         ("point of B", f"{point(result['point_b'])} (triangle {result['triangle_b']})"),
     ]
+    rows += part_rows(result)
     return [Table([*rows, *cost_rows(record["stats"])])]
 
 

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 from obbcli.report.contacts import contacts_bare, contacts_part, contacts_table
 from obbcli.report.record import answer_document
-from obbcli.report.rows import as_sampled, contained_rows, cost_rows, source_rows, why_open
+from obbcli.report.rows import (
+    as_sampled,
+    contained_rows,
+    cost_rows,
+    part_rows,
+    source_rows,
+    why_open,
+)
 from obbcli.report.table import Table, length, point
 
 if TYPE_CHECKING:
@@ -53,6 +60,7 @@ def first_contact_tables(record: Record) -> list[Table]:
         # Triangles that overlap from the start need not meet in any one way.
         way = f" ({result['feature']})" if result["feature"] else ""
         rows.append(("triangles", f"{a} of A and {b} of B{way}"))
+    rows += part_rows(result)
     rows += cost_rows(record["stats"])
     return [Table(rows), *([contacts_table(result)] if "contacts" in result else [])]
 

@@ -36,7 +36,7 @@ def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bo
     """
     is_mesh = isinstance(shape, Mesh)
     mesh = shape if isinstance(shape, Mesh) else shape.mesh
-    source = Source(path, sha256, len(mesh.triangles), mesh.notes)
+    source = Source.of(path, sha256, mesh)
     result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
     result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
     result["check"] = "passed" if is_checked else None

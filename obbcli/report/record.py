@@ -6,6 +6,7 @@ A record is a dict of plain values in a fixed order; JSON and tables are both ma
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -19,7 +20,10 @@ if TYPE_CHECKING:
 
     from obbcli.accuracy import Accuracy
     from obbcli.answers.counts import QueryStats
+    from obbcli.mesh import Mesh, PartRows
     from obbcli.motion.body import Body
+    from obbcli.tree.head import TreeHead
+    from obbcli.tree.tree import ObbTree
 
 Record: TypeAlias = dict[str, Any]
 
@@ -35,16 +39,35 @@ class Source(NamedTuple):
         sha256: of the file's bytes, in hexadecimal; None where it was not asked for.
         triangle_count: how many triangles it holds; None where it could not be read.
         notes: what of it was taken with a change, a sentence each.
+        parts: those that a pattern selected, with their rows.
     """
 
     path: str
     sha256: str | None
     triangle_count: int | None
     notes: tuple[str, ...] = ()
+    parts: tuple[PartRows, ...] = ()
+
+    @classmethod
+    def of(cls, path: str, sha256: str | None, shape: Mesh | ObbTree | TreeHead) -> Source:
+        """Return what is told of a file that holds `shape`."""
+        from obbcli.mesh import Mesh
+
+        count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
+        return cls(path, sha256, count, shape.notes, shape.parts)
 
     def part(self) -> Record:
         """Return what a record says of it."""
-        return self._asdict() | {"notes": list(self.notes)}
+        said = self._asdict() | {"notes": list(self.notes)}
+        del said["parts"]
+        return said | ({"parts": [rows._asdict() for rows in self.parts]} if self.parts else {})
+
+    def part_of(self, triangle: int | None) -> str | None:
+        """Return the path of the selected part that a row is of; None where there is none."""
+        if triangle is None:
+            return None
+        place = bisect_right(self.parts, triangle, key=lambda rows: rows.first_triangle)
+        return self.parts[place - 1].path if self.parts else None
 
 
 class Setting(NamedTuple):
@@ -76,6 +99,8 @@ def _head(name: str) -> Record:
 def answer_document(command: str, setting: Setting, result: Record, stats: QueryStats) -> Record:
     """Return the record of an answer about two bodies."""
     a, b = setting.sources
+    if a.parts or b.parts:
+        name_parts(result, a, b)
     return document(
         command,
         {"a": a.part(), "b": b.part()},
@@ -85,6 +110,14 @@ def answer_document(command: str, setting: Setting, result: Record, stats: Query
         result=result,
         stats=stats_part(stats),
     )
+
+
+def name_parts(result: Record, a: Source, b: Source) -> None:
+    """Add `part_a` and `part_b` to an answer and to each contact that it lists."""
+    rows = result.get("witness") or (result.get("triangle_a"), result.get("triangle_b"))
+    result["part_a"], result["part_b"] = a.part_of(rows[0]), b.part_of(rows[1])
+    for contact in result.get("contacts", ()):
+        name_parts(contact, a, b)
 
 
 def motion_part(bodies: tuple[Body, Body], duration: float) -> Record:

@@ -21,6 +21,13 @@ def source_rows(record: Record) -> list[tuple[str, str]]:
     return [*rows, *note_rows(sources)]
 
 
+def part_rows(result: Record) -> list[tuple[str, str]]:
+    """Return the row that names the selected parts that an answer's triangles are of."""
+    found = [(name, result.get(f"part_{name.lower()}")) for name in "AB"]
+    words = [f"{path or 'no name'} of {name}" for name, path in found if path is not None]
+    return [("parts", " and ".join(words))] if words else []
+
+
 def why_open(record: Record) -> str:
     """Return what an unresolved question may have ended at: a limit, or the end of its digits."""
     accuracy, stats = record["accuracy"], record["stats"]

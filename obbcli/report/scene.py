@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from obbcli.answers.status import Status
 from obbcli.motion.body import Body
 from obbcli.report.contacts import contact_part
-from obbcli.report.record import Source, body_part, document, note_rows, seconds_part
+from obbcli.report.record import (
+    Source,
+    body_part,
+    document,
+    name_parts,
+    note_rows,
+    seconds_part,
+)
 from obbcli.report.rows import triangle_tests
 from obbcli.report.table import Table, count, point, seconds
 
@@ -68,6 +75,8 @@ def scene_record(
         with_motion: whether to say where bodies are and how they move: centroids cost time.
     """
     places = {mesh.path: place for place, mesh in enumerate(meshes)}
+    result = _result_part(asked, answer)
+    _name_parts(result["contacts"], asked, {mesh.path: mesh for mesh in meshes})
     stats = answer.stats._asdict() | {"seconds": seconds_part(answer.stats.seconds)}
     stats["bodies"] = [body._asdict() for body in answer.stats.bodies]
     return document(
@@ -77,9 +86,18 @@ def scene_record(
         bodies=_bodies_part(asked, places, with_motion=with_motion),
         ignore=[dict(entry) for entry in ignore],
         accuracy=asked.accuracy.as_dict(),
-        result=_result_part(asked, answer),
+        result=result,
         stats=stats,
     )
+
+
+def _name_parts(contacts: list[Record], asked: ScenePairs, meshes: dict[str, Source]) -> None:
+    """Add the parts to contacts of bodies that a pattern selected."""
+    files = {body.name: meshes.get(str(body.body.shape)) for body in asked.bodies}
+    for contact in contacts:
+        a, b = files[contact["body_a"]], files[contact["body_b"]]
+        if a is not None and b is not None and (a.parts or b.parts):
+            name_parts(contact, a, b)
 
 
 def mesh_paths(asked: ScenePairs) -> list[str]:

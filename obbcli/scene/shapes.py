@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from obbcli.files import file_and_pattern
 from obbcli.mesh import Mesh, load_mesh
 from obbcli.motion.body import Body, with_pivot
 from obbcli.scene.results import BodyStats
@@ -91,4 +92,7 @@ class Shapes:
 
 def _key(shape: Shape) -> Hashable:
     """Return what two names of one file, and a shape that stands for two bodies, have in common."""
-    return os.path.realpath(shape) if isinstance(shape, (str, os.PathLike)) else id(shape)
+    if not isinstance(shape, (str, os.PathLike)):
+        return id(shape)
+    file, pattern = file_and_pattern(os.fspath(shape))
+    return os.path.realpath(file), pattern

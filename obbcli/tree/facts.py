@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from obbcli.mesh import Mesh
+    from obbcli.mesh import Mesh, PartRows
     from obbcli.tree.header import Surface
     from obbcli.tree.options import Fit, Split
     from obbcli.tree.whole import AnyTree, TreeArrays
@@ -185,6 +185,16 @@ class TreeFacts:
     def notes(self) -> tuple[str, ...]:
         """What of the mesh file was taken with a change, a sentence each; as `mesh`."""
         return self._made.description.notes
+
+    @property
+    def unit(self) -> str | None:
+        """The length of 1 that the mesh file states, such as `"m"`; None where it states none."""
+        return self._made.description.unit
+
+    @property
+    def parts(self) -> tuple[PartRows, ...]:
+        """The parts of the mesh file that were selected, with their rows; as `mesh`."""
+        return self._made.description.parts
 
     @property
     def tool_version(self) -> str:

@@ -11,8 +11,7 @@ import numpy as np
 from obbcli import kernels
 from obbcli.errors import MeshError
 from obbcli.threads import thread_count
-from obbcli.tree.header import Description
-from obbcli.tree.options import kernel_limits
+from obbcli.tree.options import Description, kernel_limits
 from obbcli.tree.whole import TreeArrays, TreeInMemory
 from obbcli.version import __version__
 
@@ -69,6 +68,8 @@ class Growth(TreeInMemory):
             source_sha256=mesh.sha256,
             tool_version=__version__,
             notes=mesh.notes,
+            unit=mesh.unit,
+            parts=mesh.parts,
         )
         self._builder = kernels.TreeBuilder(
             mesh.vertices,

@@ -28,6 +28,8 @@ class TreeHead:
         triangle_count: how many triangles its mesh has.
         node_count: how many boxes it holds.
         notes: what of the mesh file was taken with a change, a sentence each.
+        unit: the length of 1 that the mesh file states, or None.
+        parts: the parts of the mesh file that were selected, with their rows.
 
     Raises:
         TreeFileError: no tree file, another version, or damaged in its header.
@@ -44,6 +46,8 @@ class TreeHead:
         self.triangle_count = header.triangle_count
         self.node_count = header.node_count
         self.notes = header.description.notes
+        self.unit = header.description.unit
+        self.parts = header.description.parts
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:

@@ -11,20 +11,20 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 from obbcli.errors import TreeFileError
-from obbcli.tree.options import FITS, SPLITS
+from obbcli.mesh import PartRows
+from obbcli.tree.options import FITS, SPLITS, Description
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from obbcli.mesh import Mesh
-    from obbcli.tree.options import Fit, Split
 
 # As in PNG: the first byte is no text, and line ends show a transfer in text mode.
 MAGIC = b"\x89OBBT\r\n\x1a"
@@ -36,34 +36,10 @@ ALIGNMENT = 64
 # scale exponent, description bytes
 FIXED = struct.Struct("<8sIIIIQQQQiI")
 _CRC_OFFSET = 16
+# What a description may leave out, and what that means.
+_UNSAID: dict[str, Any] = {"notes": [], "unit": None, "parts": []}
 NODE_BYTES = 64
 _CORNERS_BYTES, _ID_BYTES, _VERTEX_BYTES = 12, 4, 24
-
-
-@dataclass(frozen=True, kw_only=True)
-class Description:
-    """How a tree was made, and from what.
-
-    Attributes:
-        fit: how boxes were oriented.
-        split: how nodes were parted.
-        leaf_size: a node of so many triangles is a leaf.
-        max_depth: the depth at which a node is a leaf; None: no limit.
-        source: name of the mesh file; None for a mesh made in code.
-        source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None for a
-            mesh made in code.
-        tool_version: the obbtree that built it.
-        notes: what of the mesh file was taken with a change, a sentence each.
-    """
-
-    fit: Fit
-    split: Split
-    leaf_size: int
-    max_depth: int | None
-    source: str | None
-    source_sha256: str | None
-    tool_version: str
-    notes: tuple[str, ...] = ()
 
 
 class Surface(NamedTuple):
@@ -167,7 +143,7 @@ def checked_header(data: memoryview, size: int, name: str) -> Header:
     ):
         raise TreeFileError(name, "has counts that contradict each other", "build it again")
     text = bytes(data[FIXED.size : FIXED.size + text_bytes])
-    description, surface = _description(text, name)
+    description, surface = _description(text, name, triangles)
     return Header(
         header_bytes=header_bytes,
         node_count=nodes,
@@ -180,7 +156,7 @@ def checked_header(data: memoryview, size: int, name: str) -> Header:
     )
 
 
-def _description(text: bytes, name: str) -> tuple[Description, Surface]:
+def _description(text: bytes, name: str, triangles: int) -> tuple[Description, Surface]:
     """Return what the JSON says, whose every field must be there, of its type and of use."""
     import json
 
@@ -196,9 +172,11 @@ def _description(text: bytes, name: str) -> tuple[Description, Surface]:
         "bounds": list,
         "surface_centroid": list,
         "notes": list,
+        "unit": optional_text,
+        "parts": list,
     }
     try:
-        fields = {"notes": []} | json.loads(text)
+        fields = _UNSAID | json.loads(text)
         sound = fields.keys() == types.keys() and all(
             isinstance(fields[key], kind) and not isinstance(fields[key], bool)
             for key, kind in types.items()
@@ -210,8 +188,9 @@ def _description(text: bytes, name: str) -> tuple[Description, Surface]:
     bounds, centroid = fields.pop("bounds"), fields.pop("surface_centroid")
     if not _is_surface(bounds, centroid):
         raise TreeFileError(name, "says of its surface what no mesh has", "build it again")
-    notes = fields["notes"] = tuple(fields["notes"])
-    description = Description(**fields)
+    notes = tuple(fields["notes"])
+    parts = _parts(fields["parts"], triangles)
+    description = Description(**fields | {"notes": notes, "parts": parts or ()})
     allowed = {
         "fit": description.fit in FITS,
         "split": description.split in SPLITS,
@@ -219,12 +198,27 @@ def _description(text: bytes, name: str) -> tuple[Description, Surface]:
         "max_depth": description.max_depth is None or description.max_depth >= 0,
         # Sentences that a terminal can show.
         "notes": all(isinstance(note, str) and note.isprintable() for note in notes),
+        "unit": (fields["unit"] or "").isprintable(),
+        "parts": parts is not None,
     }
     for field, is_allowed in allowed.items():
         if not is_allowed:
             wrong = f"says that {field} is {fields[field]!r}, which no tree has"
             raise TreeFileError(name, wrong, "build it again")
     return description, Surface((tuple(bounds[0]), tuple(bounds[1])), tuple(centroid))
+
+
+def _parts(rows: list[Any], triangles: int) -> tuple[PartRows, ...] | None:
+    """Return the parts that a tree's mesh was selected from; None where they do not add up."""
+    first, found = 0, []
+    for row in rows:
+        if not isinstance(row, list) or list(map(type, row)) != [str, int, int]:
+            return None
+        found.append(PartRows(*row))
+        if not found[-1].path.isprintable() or found[-1].first_triangle != first:
+            return None
+        first += max(found[-1].triangle_count, 0)
+    return tuple(found) if first == triangles or not rows else None
 
 
 def _is_surface(bounds: list[object], centroid: list[object]) -> bool:
@@ -260,9 +254,9 @@ def pack_header(
     # Questions about meshes start without this import.
     import json
 
-    fields = asdict(description) | surface._asdict()
-    # No notes are no key, so that every reader of version 1 takes the file.
-    text = json.dumps({k: v for k, v in fields.items() if v or k != "notes"}).encode()
+    fields = vars(description) | surface._asdict()
+    # What is not said is no key, so that every reader of version 1 takes the file.
+    text = json.dumps({k: v for k, v in fields.items() if v or k not in _UNSAID}).encode()
     table = checksums.astype("<u4", copy=False).tobytes()
     header_bytes = round_up(FIXED.size + len(text) + len(table))
     fixed = FIXED.pack(

@@ -1,11 +1,15 @@
-"""How trees are built: the fits, the splits and the limits, with their defaults and checks."""
+"""How trees are built, with defaults and checks, and what a tree says of how it was made."""
 
 from __future__ import annotations
 
 import operator
-from typing import Literal, NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from obbcli.errors import MeshError
+
+if TYPE_CHECKING:
+    from obbcli.mesh import PartRows
 
 Fit: TypeAlias = Literal["triangles", "points", "hull", "min-volume", "axis-aligned"]
 Split: TypeAlias = Literal["median", "center", "compact"]
@@ -64,6 +68,36 @@ class BuildOptions(NamedTuple):
 
 DEFAULT_BUILD = BuildOptions()
 """The tree of every question whose body comes as a mesh."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """How a tree was made, and from what.
+
+    Attributes:
+        fit: how boxes were oriented.
+        split: how nodes were parted.
+        leaf_size: a node of so many triangles is a leaf.
+        max_depth: the depth at which a node is a leaf; None: no limit.
+        source: name of the mesh file; None for a mesh made in code.
+        source_sha256: SHA-256 of the mesh file's bytes, hexadecimal; None for a
+            mesh made in code.
+        tool_version: the obbtree that built it.
+        notes: what of the mesh file was taken with a change, a sentence each.
+        unit: the length of 1 that the mesh file states; None where it states none.
+        parts: the parts of the mesh file that were selected; empty where all was taken.
+    """
+
+    fit: Fit
+    split: Split
+    leaf_size: int
+    max_depth: int | None
+    source: str | None
+    source_sha256: str | None
+    tool_version: str
+    notes: tuple[str, ...] = ()
+    unit: str | None = None
+    parts: tuple[PartRows, ...] = ()
 
 
 def kernel_limits(leaf_size: int, max_depth: int | None) -> tuple[int, int]:

@@ -19,7 +19,8 @@ from obbcli.mesh import Mesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.tree.header import Description, Surface
+    from obbcli.tree.header import Surface
+    from obbcli.tree.options import Description
 
 _REMEDY = "build it again from the mesh"
 
@@ -235,6 +236,14 @@ def mesh_of(arrays: TreeArrays, place: str) -> Mesh:
     triangles[ids] = arrays.corners.view(np.int32)
     about = arrays.description
     try:
-        return Mesh(arrays.vertices, triangles, about.source, about.source_sha256, about.notes)
+        return Mesh(
+            arrays.vertices,
+            triangles,
+            about.source,
+            about.source_sha256,
+            about.notes,
+            unit=about.unit,
+            parts=about.parts,
+        )
     except MeshError as fault:
         raise TreeFileError(place, str(fault), _REMEDY) from fault

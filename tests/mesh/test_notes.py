@@ -75,7 +75,7 @@ def test_tree_files_refuse_notes_that_a_terminal_would_obey() -> None:
     text = json.dumps({"notes": ["\x1b[2J"]})
     assert description.notes == ("plain",)
     with pytest.raises(TreeFileError, match="notes"):
-        header._description(_with(data, text), "x")
+        header._description(_with(data, text), "x", 1)
 
 
 def _with(data: bytes, more: str) -> bytes:

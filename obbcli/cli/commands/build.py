@@ -16,6 +16,7 @@ from obbcli.cli.options.words import PathName, Whole, byte_count
 from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
 from obbcli.errors import MeshError, ObbError
+from obbcli.files import file_and_pattern
 from obbcli.tree.options import DEFAULT_BUILD, FITS, SPLITS, BuildOptions
 
 if TYPE_CHECKING:
@@ -155,6 +156,10 @@ def _targets(meshes: tuple[str, ...], output: Path | None) -> list[tuple[str, Pa
     """
     if output is None and STDIN in meshes:
         raise UsageError(STDIN, "standard input has no name to call its tree by", "add -o FILE")
+    selected = [name for name in meshes if file_and_pattern(name)[1] is not None]
+    if selected and (output is None or output.is_dir()):
+        fault = "selects parts of a file, which name no tree"
+        raise UsageError(selected[0], fault, "build one selection, and add -o FILE")
     if output is not None and not output.is_dir():
         if len(meshes) > 1:
             raise UsageError(f"-o {output}", "is not a directory", "create it, or build one mesh")

@@ -38,7 +38,7 @@ def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> i
     levels, how it was built, and whether the mesh file beside it has changed since. --check over a
     mesh builds its tree and proves that.
     """
-    from obbcli.files import stamp_of
+    from obbcli.files import file_of, stamp_of
     from obbcli.mesh import Mesh
     from obbcli.report.info import info_record, info_tables
     from obbcli.report.record import file_sha256
@@ -46,11 +46,11 @@ def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> i
 
     keep_inputs(common.output, (file,))
     start = time.perf_counter()
-    stamp = stamp_of(file)
+    stamp = stamp_of(file_of(file))
     shape, sha256 = read_shape(file, verify=not no_verify)
     if check:
         (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
-    sha256 = sha256 or file_sha256(file, stamp)
+    sha256 = sha256 or file_sha256(file_of(file), stamp)
     record = info_record(file, shape, sha256, is_checked=check)
     record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
     emit(record, info_tables, common)

@@ -119,7 +119,7 @@ def _read(
     file: str, options: AccuracyOptions, duration: float | None, *, verify: bool
 ) -> tuple[Scene, Source, Stamps]:
     """Return the scene as asked about, its file, and what the files of its bodies are by now."""
-    from obbcli.files import stamp_of
+    from obbcli.files import file_of, stamp_of
     from obbcli.mesh import digest_of
     from obbcli.report.record import Source
     from obbcli.scene import Scene
@@ -130,7 +130,7 @@ def _read(
     folder = Path() if file == STDIN else Path(file).parent
     parts = parse_scene(data, name, folder, is_json=name.lower().endswith(".json"))
     paths = {str(body.body.shape) for body in parts.bodies}
-    stamps = {path: stamp_of(path) for path in paths}
+    stamps = {path: stamp_of(file_of(path)) for path in paths}
     scene = Scene(
         parts.bodies,
         parts.ignore,
@@ -204,18 +204,17 @@ def _record(
     Raises:
         ObbError: a body's file is not what it was when the scene was read.
     """
+    from obbcli.files import file_of
     from obbcli.report.record import Source, file_sha256
     from obbcli.report.scene import mesh_paths, scene_record
 
     asked = found.asked
-    stats = zip(asked.bodies, answer.stats.bodies, strict=True)
-    triangles = {str(body.body.shape): part.triangle_count for body, part in stats}
     shapes = zip(asked.bodies, asked.shapes, strict=True)
-    notes = {str(body.body.shape): shape.notes for body, shape in shapes}
+    made = {str(body.body.shape): shape for body, shape in shapes}
     meshes = []
     for path in mesh_paths(asked):
-        digest = None if stamps is None else file_sha256(path, stamps[path])
-        meshes.append(Source(path, digest, triangles[path], notes[path]))
+        digest = None if stamps is None else file_sha256(file_of(path), stamps[path])
+        meshes.append(Source.of(path, digest, made[path]))
     is_hashed = stamps is not None
     return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
 

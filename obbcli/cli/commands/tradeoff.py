@@ -182,8 +182,7 @@ def _read(
     asked: _TradeoffOptions,
 ) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
     """Return A and B, and what a record says of them."""
-    from obbcli.files import stamp_of
-    from obbcli.mesh import Mesh
+    from obbcli.files import file_of, stamp_of
     from obbcli.report.record import Source, file_sha256
 
     if asked.a == asked.b == STDIN:
@@ -192,12 +191,11 @@ def _read(
     for name in (asked.a, asked.b):
         if name in found:
             continue
-        stamp = stamp_of(name)
+        stamp = stamp_of(file_of(name))
         shape, digest = read_shape(name, verify=not asked.no_verify)
-        count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
         if digest is None and asked.common.json:
-            digest = file_sha256(name, stamp)
-        found[name] = shape, Source(name, digest, count, shape.notes)
+            digest = file_sha256(file_of(name), stamp)
+        found[name] = shape, Source.of(name, digest, shape)
     (a, source_a), (b, source_b) = found[asked.a], found[asked.b]
     return (a, b), (source_a, source_b)
 

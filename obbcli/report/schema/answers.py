@@ -7,6 +7,7 @@ from obbcli.answers.distance import Distance
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,
+    PART_NAMES,
     PATH_FIELDS,
     RIGID_FIELDS,
     SECONDS,
@@ -54,7 +55,9 @@ def collide() -> Schema:
         "pairs": told(list_of(_PAIR_OF_TRIANGLES), "row of A, row of B, sorted; with --all-pairs"),
         "pairs_complete": told(FLAG, "whether these are all"),
     }
-    return pair_document("collide", record(fields | pairs, optional=pairs), solid=_SOLID)
+    return pair_document(
+        "collide", record(fields | pairs | PART_NAMES, optional={*pairs, *PART_NAMES}), solid=_SOLID
+    )
 
 
 def first_contact() -> Schema:
@@ -66,7 +69,8 @@ def first_contact() -> Schema:
             or_null(AMOUNT), "s; where a limit ended the list: all contacts before it are there"
         ),
     }
-    result = record(CONTACT_FIELDS | listed, optional=listed)
+    more = listed | PART_NAMES
+    result = record(CONTACT_FIELDS | more, optional=more)
     return pair_document("first-contact", result, solid=_SOLID)
 
 
@@ -84,7 +88,8 @@ def distance() -> Schema:
         },
     )
     ended = told(FLAG, "whether the search ended before a limit")
-    return pair_document("distance", record(fields | {"complete": ended}))
+    result = record(fields | {"complete": ended} | PART_NAMES, optional=PART_NAMES)
+    return pair_document("distance", result)
 
 
 def scene() -> Schema:
@@ -125,12 +130,13 @@ def _body(movement: dict[str, Schema]) -> Schema:
 def _scene_result() -> Schema:
     names = documented(SceneContact, {"body_a": TEXT, "body_b": TEXT})
     open_pair = names | {"time": told(AMOUNT, "s; nothing is known of the pair after it")}
+    contact = record(names | CONTACT_FIELDS | PART_NAMES, optional=PART_NAMES)
     return record(
         {
             "status": STATUS,
             "time": told(or_null(AMOUNT), "s; of the earliest contact"),
             "approximate": told(FLAG, "whether any contact, or being apart, is not proven"),
-            "contacts": told(list_of(record(names | CONTACT_FIELDS)), "earliest first"),
+            "contacts": told(list_of(contact), "earliest first"),
             "contacts_complete": told(FLAG, "whether these are all"),
             "unresolved": told(list_of(record(open_pair)), "pairs that a limit left open"),
             "interrupted": told(FLAG, "whether Ctrl-C ended the search"),

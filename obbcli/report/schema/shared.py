@@ -6,6 +6,7 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts, QueryStats
 from obbcli.answers.status import Status
+from obbcli.mesh import PartRows
 from obbcli.report.record import SCHEMA_VERSION
 from obbcli.report.schema.typed import schemas_of
 from obbcli.report.schema.words import (
@@ -69,6 +70,19 @@ PATH_FIELDS = {
     "poses": told(list_of(ref("pose")), "one a time; between two, both velocities are constant"),
 }
 
+_PART_ROWS = record(
+    documented(PartRows, {"path": TEXT, "first_triangle": COUNT, "triangle_count": COUNT})
+)
+PART_NAMES = {
+    f"part_{side}": told(
+        or_null(TEXT),
+        f"path of the selected part of {side.upper()} that its triangle is of; there where "
+        "FILE#PATTERN selected parts of A or B",
+    )
+    for side in "ab"
+}
+"""What an answer adds to its triangles; both keys or none."""
+
 BUILD_FIELDS = {
     "fit": told(TEXT, "how boxes are fitted"),
     "split": told(TEXT, "how boxes are divided"),
@@ -83,13 +97,18 @@ DEFINITIONS: dict[str, Schema] = {
             "sha256": told(or_null(SHA256), "of the file's bytes; null where they were not read"),
             "triangle_count": told(or_null(COUNT), "null where there is none to count"),
             "notes": told(list_of(TEXT), "what of it was taken with a change, a sentence each"),
+            "parts": told(list_of(_PART_ROWS), "those that FILE#PATTERN selected; else left out"),
         },
-        optional=("notes",),  # documents written before it came have none
+        optional=("notes", "parts"),  # documents written before notes came have none
         description="A file that was asked about.",
     ),
     "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),
     "stats": record(STATS_FIELDS, description="What the answer cost; not the same every time."),
-    "contact": record(CONTACT_FIELDS, description="When and where two triangles first touch."),
+    "contact": record(
+        CONTACT_FIELDS | PART_NAMES,
+        optional=PART_NAMES,
+        description="When and where two triangles first touch.",
+    ),
     "pose": _POSE,
     "rigid": record(RIGID_FIELDS, description="Constant linear and angular velocity."),
     "path": record(PATH_FIELDS, description="A path through given poses."),
