@@ -16,8 +16,9 @@ from obbcli.mesh.formats.cell_surface import Block, surface
 from obbcli.mesh.formats.nastran_checks import check_continuations, check_names, tell_of
 from obbcli.mesh.formats.nastran_deck import Deck
 from obbcli.mesh.formats.nastran_elements import Elements, cell_blocks, read_elements
-from obbcli.mesh.formats.nastran_grids import Section, read_grids
+from obbcli.mesh.formats.nastran_grids import read_grids
 from obbcli.mesh.formats.nastran_lines import Lines
+from obbcli.mesh.formats.nastran_section import Section
 from obbcli.mesh.formats.text import counted
 
 if TYPE_CHECKING:

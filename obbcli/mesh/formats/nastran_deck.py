@@ -24,7 +24,7 @@ MAIN = "BULK"
 _STATEMENT = 72
 
 
-class Section(NamedTuple):
+class SectionRange(NamedTuple):
     """Holds where a section of bulk data stands; its GRIDs and elements are numbered apart.
 
     Args:
@@ -77,7 +77,7 @@ class Deck:
         """Tell what is taken with a change."""
         self._source.note(text)
 
-    def _found_sections(self) -> list[Section]:
+    def _found_sections(self) -> list[SectionRange]:
         """Return the sections of bulk data; without BEGIN BULK all of the deck is one."""
         begins = [begin for begin, _ in statements(self.text, b"BEGIN") if self._is_section(begin)]
         first = begins[0] if begins else len(self.text)
@@ -96,15 +96,15 @@ class Deck:
                     "CEND ends the executive control, but no BEGIN BULK follows",
                     "it was cut short: write it again",
                 )
-            return [Section(MAIN, 0, len(self.text), 0)]
-        sections: dict[str, Section] = {}
+            return [SectionRange(MAIN, 0, len(self.text), 0)]
+        sections: dict[str, SectionRange] = {}
         for start, end in pairwise([*begins, len(self.text)]):
             name = self._name_of(start)
             if name in sections:
                 raise self._at(start, f"'BEGIN {name}' stands here a second time", "keep one")
             after = self._after_line(start)
             line = self.text.count(b"\n", 0, after)
-            sections[name] = Section(name, after, max(end, after), line)
+            sections[name] = SectionRange(name, after, max(end, after), line)
         return list(sections.values())
 
     def _after_line(self, start: int) -> int:

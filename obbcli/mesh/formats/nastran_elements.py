@@ -8,14 +8,13 @@ import numpy as np
 
 from obbcli.mesh.formats import nastran_cards as known
 from obbcli.mesh.formats.cell_surface import Block
-from obbcli.mesh.formats.nastran_fields import field_table
 from obbcli.mesh.formats.nastran_numbers import real_numbers, whole_numbers
-from obbcli.mesh.formats.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.mesh.formats.nastran_grids import Grids, Section
+    from obbcli.mesh.formats.nastran_grids import Grids
+    from obbcli.mesh.formats.nastran_section import Section
 
 
 class Elements(NamedTuple):
@@ -55,24 +54,23 @@ def read_elements(section: Section, grids: Grids) -> list[Elements]:
 
 
 def _read(section: Section, grids: Grids, name: bytes, element: known.Element) -> Elements:
-    deck, lines, cards = section
     count = 1 + max(*element.nodes, element.offset or 0)
-    table = _without_systems(field_table(deck, lines, cards[name], count))
+    table = _without_systems(section.fields(name, count))
     numbers = whole_numbers(table[:, 0])
-    _refuse(section, name, table[:, 0], numbers <= 0, "a number above 0")
+    section.refuse(name, table[:, 0], numbers <= 0, "a number above 0")
     words = table[:, element.nodes]
     nodes = whole_numbers(words)
     for column in range(nodes.shape[1]):
         is_corner = column < element.corners
         wrong = nodes[:, column] <= 0 if is_corner else nodes[:, column] < 0
         what = f"the GRID of corner {column + 1}" if is_corner else "a GRID or nothing"
-        _refuse(section, name, words[:, column], wrong, what)
+        section.refuse(name, words[:, column], wrong, what)
     rows = grids.rows(nodes)
     missing = (rows < 0) & (nodes > 0)
     if missing.any():
         card = int(np.argmax(missing.any(axis=1)))
         number = int(nodes[card][missing[card]][0])
-        raise deck.error(
+        raise section.deck.error(
             section.line_of(name, card),
             f"{name.decode('ascii')} {numbers[card]} uses GRID {number}, which is not in the deck",
             "add the GRID, or the INCLUDE that holds it",
@@ -81,7 +79,7 @@ def _read(section: Section, grids: Grids, name: bytes, element: known.Element) -
     if element.offset is not None:
         values, wrong = real_numbers(table[:, element.offset])
         offsets = int((wrong | (values != 0)).sum())
-    return Elements(name, numbers, cards[name].lines, rows, offsets)
+    return Elements(name, numbers, section.cards[name].lines, rows, offsets)
 
 
 def _without_systems(table: NDArray[np.bytes_]) -> NDArray[np.bytes_]:
@@ -94,18 +92,6 @@ def _without_systems(table: NDArray[np.bytes_]) -> NDArray[np.bytes_]:
         if table[row, field].strip() == known.MATERIAL_SYSTEM:
             table[row, field:] = b""
     return table
-
-
-def _refuse(
-    section: Section, name: bytes, words: NDArray[np.bytes_], wrong: NDArray[np.bool_], what: str
-) -> None:
-    if wrong.any():
-        card = int(np.argmax(wrong))
-        raise section.deck.error(
-            section.line_of(name, card),
-            f"{name.decode('ascii')} has '{shown(words[card].strip())}', expected {what}",
-            "correct the field, or its columns",
-        )
 
 
 def _without_repeats(section: Section, found: list[Elements]) -> list[Elements]:

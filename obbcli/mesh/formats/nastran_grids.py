@@ -3,38 +3,21 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from obbcli.mesh.formats import nastran_cards as known
-from obbcli.mesh.formats.nastran_fields import field_table
 from obbcli.mesh.formats.nastran_numbers import real_numbers, whole_numbers
 from obbcli.mesh.formats.nastran_systems import Definition, Grid, Systems
-from obbcli.mesh.formats.text import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
-    from obbcli.mesh.formats.nastran_deck import Deck
-    from obbcli.mesh.formats.nastran_lines import Cards, Lines
+    from obbcli.mesh.formats.nastran_section import Section
 
 #: Fields of a GRID: number, system, three coordinates.
 _ID, _SYSTEM, _PLACE = 0, 1, slice(2, 5)
-
-
-class Section(NamedTuple):
-    """Holds what a section of bulk data is read from."""
-
-    deck: Deck
-    lines: Lines
-    cards: Mapping[bytes, Cards]
-
-    def line_of(self, name: bytes, card: int) -> int:
-        """Return the deck's line of a card of some name."""
-        return int(self.lines.numbers[self.cards[name].lines[card]])
 
 
 class Grids:
@@ -68,24 +51,25 @@ def read_grids(section: Section) -> Grids:
     deck, lines, cards = section
     if known.GRID not in cards:
         return Grids(np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
-    table = field_table(deck, lines, cards[known.GRID], 5)
+    table = section.fields(known.GRID, 5)
     numbers = _numbers(section, known.GRID, table, _ID)
     systems = whole_numbers(table[:, _SYSTEM])
-    _refuse(section, known.GRID, table[:, _SYSTEM], systems < 0, "the number of a system")
+    section.refuse(known.GRID, table[:, _SYSTEM], systems < 0, "the number of a system")
     default = _default_system(section)
     if default:
         systems[np.char.strip(table[:, _SYSTEM]) == b""] = default
     places, wrong = real_numbers(table[:, _PLACE])
     for axis in range(3):
-        _refuse(section, known.GRID, table[:, 2 + axis], wrong[:, axis], "a coordinate")
+        section.refuse(known.GRID, table[:, 2 + axis], wrong[:, axis], "a coordinate")
     kept = _first_of_each(section, numbers, systems, places)
     lines_of = lines.numbers[cards[known.GRID].lines[kept]]
     numbers, systems, places = numbers[kept], systems[kept], places[kept]
     unplaced = Grids(numbers, places)
     resolved = Systems(deck, _definitions(section), partial(_grid, unplaced, systems))
     placed = places.copy()
-    for system in np.unique(systems[systems != 0]).tolist():
-        rows = np.flatnonzero(systems == system)
+    order = np.argsort(systems, kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(systems[order])) + 1):
+        system = int(systems[rows[0]])
         placed[rows] = resolved.placed(system, places[rows], int(lines_of[rows[0]]))
     return Grids(numbers, placed)
 
@@ -100,21 +84,8 @@ def _numbers(
 ) -> NDArray[np.int64]:
     """Return identification numbers, which must be above 0."""
     numbers = whole_numbers(table[:, field])
-    _refuse(section, name, table[:, field], numbers <= 0, "a number above 0")
+    section.refuse(name, table[:, field], numbers <= 0, "a number above 0")
     return numbers
-
-
-def _refuse(
-    section: Section, name: bytes, words: NDArray[np.bytes_], wrong: NDArray[np.bool_], what: str
-) -> None:
-    """Refuse the first card in whose field stands something else than what is expected."""
-    if wrong.any():
-        card = int(np.argmax(wrong))
-        raise section.deck.error(
-            section.line_of(name, card),
-            f"{name.decode('ascii')} has '{shown(words[card].strip())}', expected {what}",
-            "correct the field, or its columns",
-        )
 
 
 def _first_of_each(
@@ -144,10 +115,10 @@ def _default_system(section: Section) -> int:
     """Return the system of GRIDs that name none."""
     if known.GRID_DEFAULTS not in section.cards:
         return 0
-    table = field_table(*section[:2], section.cards[known.GRID_DEFAULTS], 2)
+    table = section.fields(known.GRID_DEFAULTS, 2)
     systems = whole_numbers(table[:, _SYSTEM])
     words = table[:, _SYSTEM]
-    _refuse(section, known.GRID_DEFAULTS, words, systems < 0, "the number of a system")
+    section.refuse(known.GRID_DEFAULTS, words, systems < 0, "the number of a system")
     if len(set(systems.tolist())) > 1:
         line = section.line_of(known.GRID_DEFAULTS, 1)
         raise section.deck.error(line, "a second GRDSET names another system", "keep one")
@@ -184,7 +155,7 @@ def _alike(a: Definition, b: Definition) -> bool:
 
 def _by_grids(section: Section, name: bytes) -> list[tuple[int, Definition]]:
     """Return the one or two systems that each card defines by three GRIDs."""
-    table = field_table(*section[:2], section.cards[name], 8)
+    table = section.fields(name, 8)
     values = whole_numbers(table)
     found = []
     for card, row in enumerate(values.tolist()):
@@ -203,13 +174,13 @@ def _by_grids(section: Section, name: bytes) -> list[tuple[int, Definition]]:
 
 def _by_points(section: Section, name: bytes) -> list[tuple[int, Definition]]:
     """Return the systems that cards define by three points of another system."""
-    table = field_table(*section[:2], section.cards[name], 11)
+    table = section.fields(name, 11)
     numbers = _numbers(section, name, table, 0)
     references = whole_numbers(table[:, 1])
-    _refuse(section, name, table[:, 1], references < 0, "the number of a system")
+    section.refuse(name, table[:, 1], references < 0, "the number of a system")
     points, wrong = real_numbers(table[:, 2:])
     for field in range(9):
-        _refuse(section, name, table[:, 2 + field], wrong[:, field], "a coordinate")
+        section.refuse(name, table[:, 2 + field], wrong[:, field], "a coordinate")
     return [
         (
             number,
@@ -228,7 +199,7 @@ def _by_points(section: Section, name: bytes) -> list[tuple[int, Definition]]:
 
 def _others(section: Section, name: bytes) -> list[tuple[int, Definition]]:
     """Return the systems of kinds that are not read, in which no GRID may stand."""
-    numbers = whole_numbers(field_table(*section[:2], section.cards[name], 1)[:, 0])
+    numbers = whole_numbers(section.fields(name, 1)[:, 0])
     return [
         (number, Definition(section.line_of(name, card), ""))
         for card, number in enumerate(numbers.tolist())

@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from obbcli.mesh.formats.nastran_deck import Deck, Section
+    from obbcli.mesh.formats.nastran_deck import Deck, SectionRange
 
 #: Columns that count in fixed fields; what stands behind them is no data.
 COLUMNS = 80
@@ -54,7 +54,7 @@ class Lines:
         kinds: `SMALL`, `LARGE` or `OTHER` of each.
     """
 
-    def __init__(self, deck: Deck, section: Section) -> None:
+    def __init__(self, deck: Deck, section: SectionRange) -> None:
         self._deck = deck
         self._data = deck.text[section.start : section.end] + b" " * (2 * COLUMNS)
         self.text = np.frombuffer(self._data, dtype=np.uint8)

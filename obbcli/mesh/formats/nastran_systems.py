@@ -96,26 +96,25 @@ class Systems:
 
     def _frame(self, system: int, line: int) -> _Frame:
         """Return a system, with those that it stands in resolved before it."""
-        waiting = [(system, line)]
+        waiting, opened = [(system, line)], {system}
         while waiting:
             number, line = waiting[-1]
             if number in self._frames:
-                waiting.pop()
+                opened.discard(waiting.pop()[0])
                 continue
             definition = self._definition(number, line)
             above = [item for item in self._needed(definition) if item not in self._frames]
             if not above:
                 self._frames[number] = self._resolved(definition)
-                waiting.pop()
                 continue
-            opened = {item for item, _ in waiting}
-            if opened & set(above):
+            if not opened.isdisjoint(above):
                 raise self._deck.error(
                     definition.line,
                     f"coordinate system {number} is defined by itself",
                     "define one of the circle by points in the basic system",
                 )
             waiting.append((above[0], definition.line))
+            opened.add(above[0])
         return self._frames[system]
 
     def _definition(self, number: int, line: int) -> Definition:
