@@ -116,7 +116,7 @@ def test_what_does_not_apply_is_null(capsys):
 
 def test_internal_error_is_one_object(here: Path, obbtree, monkeypatch):
     monkeypatch.setattr(
-        "obbcli.questions.collide.collide", lambda *_: fail(IndexError("beyond\nall"))
+        "obbcli.questions.collide.collide_pair", lambda *_, **__: fail(IndexError("beyond\nall"))
     )
 
     ended = obbtree("collide", "cube.stl", "apart.obj", "--json")

@@ -192,7 +192,7 @@ def test_ctrl_c_tells_what_is_proven(here, obbtree, monkeypatch):
         return look(self, proven)
 
     monkeypatch.setattr(Search, "_look", interrupted)
-    monkeypatch.setattr("obbcli.questions.search.POPS_A_SLICE", 100)
+    monkeypatch.setattr("obbcli.questions.budget.POPS_A_SLICE", 100)
 
     ended = obbtree("first-contact", *GEARS, *TURNING, "--limit", 9)
 

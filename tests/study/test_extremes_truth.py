@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from oracles.moving import first_contact_triangles
 
-from obbcli import Accuracy, Body, Mesh, Motion, Status, first_contact
+from obbcli import Body, Mesh, Motion, Status, first_contact
+from obbcli.questions.pair_question import PairQuestion
 from obbcli.study.stability.battery import plan
 from obbcli.study.stability.world import Trees, pair_of
 
@@ -52,7 +53,7 @@ def worst_case(seed: int) -> Pair:
         Body(Mesh(first, [[0, 1, 2]]), motion=Motion([0, 0, 0.5])),
         Body(Mesh(second, [[0, 1, 2]]), motion=Motion([0.1, 0, -1])),
     )
-    return pair_of(*bodies, 2.0, Accuracy())
+    return pair_of(PairQuestion.of(*bodies, 2.0))
 
 
 def truth(pair: Pair) -> Fraction | None:
