@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from harness import Row
 
 PAGE = Path(__file__).resolve().parents[2] / "obbcli" / "manual" / "speed.md"
+# A page has room for so many rows a table: longer ones show the largest meshes alone.
+_MOST_ROWS = 20
 FIGURES = re.compile(
     r"(?P<begin><!-- figures: (?P<name>[\w-]+) -->\n).*?(?P<end><!-- end of figures -->)", re.DOTALL
 )
@@ -91,6 +93,8 @@ def told(machine: Mapping[str, Any], bench: Mapping[str, Any]) -> str:
 
 def medians(rows: Sequence[Row]) -> str:
     """Return rows of one bench: medians, and ours against the best other."""
+    if len(rows) > _MOST_ROWS:
+        rows = [row for row in rows if row.triangles * 2 > max(r.triangles for r in rows)]
     who = list(dict.fromkeys(name for row in rows for name in row.timings))
     lines = [["case", "triangles", *who, f"best other / {OURS}"]]
     for row in rows:
