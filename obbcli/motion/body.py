@@ -127,6 +127,10 @@ def as_body(shape: Body | Shape) -> Body:
     """Return a `Body` as it is, and anything else at rest where its file put it.
 
     Raises:
-        MotionError: neither a body nor a tree, a mesh or a path.
+        MotionError: neither a body nor a tree, a mesh, a part or a path.
     """
-    return shape if isinstance(shape, Body) else Body(shape)
+    if isinstance(shape, Body):
+        return shape
+    # A `Part` says so itself: its module is imported by those who load parts.
+    placed = getattr(shape, "body", None)
+    return placed if isinstance(placed, Body) else Body(shape)

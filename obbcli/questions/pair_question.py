@@ -131,6 +131,9 @@ def _tree(shape: Shape) -> ObbTree:
         return ObbTree.build(shape)
     if isinstance(shape, (str, os.PathLike)):
         return load_tree(shape)
+    decoded = getattr(shape, "mesh", None)  # that of a part, which is decoded by this look
+    if isinstance(decoded, Mesh):
+        return ObbTree.build(decoded)
     raise MotionError(
         "shape", f"is of type {type(shape).__name__}", "pass a tree, a mesh or a path"
     )

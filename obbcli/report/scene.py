@@ -111,7 +111,8 @@ def _bodies_part(asked: ScenePairs, places: dict[str, int], *, with_motion: bool
     return [
         {
             "name": body.name,
-            "mesh": places[str(body.body.shape)],
+            # Parts of the scene's own file are no paths, and then it is the only one.
+            "mesh": places.get(str(body.body.shape), 0),
             "static": body.static,
             "group": body.group,
             **(body_part(Body(shape, body.body.pose, body.body.motion)) if with_motion else {}),
@@ -180,6 +181,10 @@ def explained_tables(record: Record) -> list[Table]:
     ]
     columns = ("body", "file", "triangles loaded", "boxes built")
     title = "what of each body was used; bodies of one file share it"
+    stats = record["stats"]
+    if "meshes_decoded" in stats:
+        decoded = f"{count(stats['meshes_decoded'])} of {count(stats['meshes_possible'])}"
+        title = f"what of each body was used; meshes decoded: {decoded}, which copies share"
     return [*scene_tables(record), Table(rows, columns, title, name_count=2)]
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from obbcli.errors import SceneError
+from obbcli.mesh.parts.placed import UniquePaths
+from obbcli.motion.assembly import Assembly
 from obbcli.motion.body import Body, Shape, as_body
 from obbcli.spelling import known_keys, nearest
 
@@ -15,7 +18,7 @@ if TYPE_CHECKING:
 
 # `{"bodies": [a, b]}`, `{"groups": [g]}` (within one group) or `{"groups": [g, h]}` (between two).
 Ignore: TypeAlias = Mapping[str, Sequence[str]]
-Bodies: TypeAlias = Mapping[str, Body | Shape] | Iterable["SceneBody"]
+Bodies: TypeAlias = Mapping[str, Body | Shape] | Iterable["SceneBody"] | Assembly
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -82,6 +85,8 @@ def as_bodies(bodies: Bodies) -> tuple[SceneBody, ...]:
         SceneError: there are none, two have one name, or one is no `SceneBody`.
         MotionError: one of a mapping is no body or shape.
     """
+    if isinstance(bodies, Assembly):
+        bodies = _parts_by_name(bodies)
     if isinstance(bodies, Mapping):
         made = tuple(SceneBody(name, body) for name, body in bodies.items())
     else:
@@ -102,6 +107,13 @@ def as_bodies(bodies: Bodies) -> tuple[SceneBody, ...]:
     if not made:
         raise SceneError("scene", "has no bodies", "add some: [[body]] with name and mesh")
     return made
+
+
+def _parts_by_name(assembly: Assembly) -> dict[str, Body | Shape]:
+    """Return the parts of a file by their paths; one without is called as the file."""
+    nameless = Path(assembly.source or "part").stem or "part"
+    paths = UniquePaths()
+    return {paths.take(part.path or nameless): part.body for part in assembly}
 
 
 def as_ignored(ignore: Iterable[Ignore], bodies: tuple[SceneBody, ...]) -> tuple[Ignore, ...]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import SceneError
+from obbcli.files import file_of
+from obbcli.mesh import known_suffixes
+from obbcli.motion.assembly import load_parts
 from obbcli.questions.border import whole_limit
 from obbcli.questions.pair_question import duration_of
 from obbcli.scene.bodies import SceneParts, as_bodies, as_ignored
@@ -30,7 +34,8 @@ class Scene:
     reach; pairs that keep apart cost no look at their trees.
 
     Args:
-        bodies: a mapping of names to bodies, trees, meshes or paths; or `SceneBody` objects.
+        bodies: a mapping of names to bodies, trees, meshes, parts or paths; or `SceneBody` objects;
+            or an `Assembly`, each part of which is a body at rest that is called by its path.
         ignore: pairs not asked about: `{"bodies": [a, b]}`, `{"groups": [g]}` for all of one group
             among themselves, `{"groups": [g, h]}` for those of one against those of the other.
         duration: s; the closed interval [0, duration] is asked about. None: the last time of all
@@ -80,9 +85,11 @@ class Scene:
     def load(cls, path: str | os.PathLike[str], *, verify: bool = True) -> Scene:
         """Return the scene in a TOML or JSON file; the meshes are read when they are needed.
 
+        Of a mesh file, told by its suffix, the scene is all its parts at rest, as of an `Assembly`.
+
         Args:
-            path: the file. One whose name ends in `.json` is JSON, else one that begins with `{`,
-                and TOML all others.
+            path: the file, or a mesh file or `"FILE#PATTERN"`. One whose name ends in `.json` is
+                JSON, else one that begins with `{`, and TOML all others.
             verify: whether the checksums of tree files are compared.
 
         Raises:
@@ -90,6 +97,8 @@ class Scene:
         """
         from obbcli.scene.reader import read_scene
 
+        if is_mesh_file(path):
+            return cls(load_parts(path), verify=verify)
         parts = read_scene(path)
         return cls(parts.bodies, parts.ignore, parts.duration, parts.accuracy, verify=verify)
 
@@ -146,3 +155,8 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"Scene({len(self.bodies)} bodies, {self.duration!r} s)"
+
+
+def is_mesh_file(path: str | os.PathLike[str]) -> bool:
+    """Return whether a name is that of a mesh file, which is a scene of its parts."""
+    return Path(file_of(path)).suffix.lower() in known_suffixes()

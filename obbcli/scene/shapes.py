@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from obbcli.files import file_and_pattern
 from obbcli.mesh import Mesh, load_mesh
+from obbcli.motion.assembly import LazyMesh
 from obbcli.motion.body import Body, with_pivot
 from obbcli.scene.results import BodyStats
 from obbcli.tree.head import TreeHead
@@ -44,6 +45,8 @@ class Shapes:
             return shape
         key = _key(shape)
         found = self._loaded.get(key)
+        if found is None and isinstance(shape, LazyMesh):
+            found = self._loaded[key] = shape.mesh
         if found is None:
             assert isinstance(shape, (str, os.PathLike))
             if begins_as_tree(Path(shape)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from cube_files import cube, obj
+from mesh_files.cube_files import cube, obj
 
 from obbcli import Scene, load_mesh
 

@@ -37,6 +37,10 @@ def assert_whole(path):
     """Assert that the parts, placed, are what `load_mesh` returns, bit for bit."""
     parts = load_parts(path)
     placed = np.concatenate([corners(part.mesh, part.vertices()) for part in parts])
+    for part in parts:
+        points = corners(part.mesh, part.vertices()).reshape(-1, 3)
+        bounds = [points.min(axis=0).tolist(), points.max(axis=0).tolist()]
+        assert part.placed_bounds().tolist() == bounds
 
     assert placed.tobytes() == (corners(load_mesh(path)) + 0.0).tobytes()
     assert corners(load_mesh(f"{path}#**")).tobytes() == corners(load_mesh(path)).tobytes()

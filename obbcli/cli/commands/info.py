@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from obbcli.cli.inputs import keep_inputs, read_shape
+from obbcli.cli.boundary import UsageError
+from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options.option import Command, common_options, option, verify_option
 from obbcli.cli.options.words import PathName
 from obbcli.cli.output import emit
+from obbcli.errors import MeshError
 
 if TYPE_CHECKING:
     from obbcli.cli.options.option import CommonOptions
@@ -25,13 +28,15 @@ Examples:
   obbtree info gear.stl
   obbtree info gear.obbt --check
   obbtree info gear.obbt --json
+  obbtree info robot.glb --parts
 """,
 )
 @click.argument("file", metavar="FILE", type=PathName())
 @option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
+@option("Question", "--parts", is_flag=True, help="List the parts of a mesh file, placed.")
 @verify_option
 @common_options()
-def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> int:
+def command(file: str, check: bool, parts: bool, no_verify: bool, common: CommonOptions) -> int:
     """Show what FILE holds: a mesh, or a tree with the mesh inside it.
 
     Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
@@ -45,6 +50,8 @@ def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> i
     from obbcli.tree.tree import ObbTree
 
     keep_inputs(common.output, (file,))
+    if parts:
+        return _parts(file, common, check=check)
     start = time.perf_counter()
     stamp = stamp_of(file_of(file))
     shape, sha256 = read_shape(file, verify=not no_verify)
@@ -54,4 +61,25 @@ def command(file: str, check: bool, no_verify: bool, common: CommonOptions) -> i
     record = info_record(file, shape, sha256, is_checked=check)
     record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
     emit(record, info_tables, common)
+    return 0
+
+
+def _parts(file: str, common: CommonOptions, *, check: bool) -> int:
+    """List the parts of a mesh file."""
+    from obbcli.files import file_of
+    from obbcli.motion.assembly import load_parts
+    from obbcli.report.parts import parts_bare, parts_record, parts_tables
+    from obbcli.tree.tree import begins_as_tree
+
+    if check:
+        raise UsageError("--parts", "lists parts, and --check proves a tree", "leave out one")
+    if file == STDIN:
+        raise UsageError("--parts", "reads a file, not standard input", "name a file")
+    start = time.perf_counter()
+    if begins_as_tree(Path(file_of(file))):
+        remedy = "ask about the mesh that it was built of"
+        raise MeshError(file, "is a tree file, which has no parts", remedy)
+    record = parts_record(file, load_parts(file))
+    record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
+    emit(record, parts_tables, common, bare=parts_bare)
     return 0

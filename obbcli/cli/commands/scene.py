@@ -47,6 +47,7 @@ class _Wanted(NamedTuple):
 Examples:
   obbtree scene cell.toml
   obbtree scene cell.toml --first --json
+  obbtree scene robot.glb                   which of its parts touch?
   obbtree scene cell.toml --pairs gripper,part --pairs gripper,table --all-contacts
   obbtree scene cell.toml --exit-code --quiet && echo "nothing touches"
 """,
@@ -89,7 +90,8 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     """When do which of many moving bodies first touch, where, and with which triangles?
 
     SCENE is a TOML or JSON file that names meshes, where they are and how they move; - stands for
-    standard input. What is given here overrides what it says. Ctrl-C prints what is known by then.
+    standard input. It may be a mesh file too, all parts of which are asked about at rest. What is
+    given here overrides what it says. Ctrl-C prints what is known by then.
     """
     wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
     _refuse_contradictions(wanted)
@@ -97,7 +99,7 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     if wanted.all_contacts and scene.accuracy.method == "sampled":
         fault = "lists contacts of triangles, and sampling finds the first contact alone"
         raise UsageError("--all-contacts", fault, "ask for --method certified")
-    keep_inputs(common.output, (file, *(str(body.body.shape) for body in scene.bodies)))
+    keep_inputs(common.output, (file, *stamps))
     found = _ask(scene, wanted)
     answer = _run(found, wanted, progress=common.shows_progress)
     # Hashes cost time, and only a document shows them.
@@ -124,7 +126,10 @@ def _read(
     from obbcli.report.record import Source
     from obbcli.scene import Scene
     from obbcli.scene.reader import parse_scene, read_bytes
+    from obbcli.scene.scene import is_mesh_file
 
+    if file != STDIN and is_mesh_file(file):
+        return _read_parts(file, options, duration)
     name = _STDIN_NAME if file == STDIN else file
     data = read_stdin() if file == STDIN else read_bytes(Path(file), name)
     folder = Path() if file == STDIN else Path(file).parent
@@ -139,6 +144,21 @@ def _read(
         verify=verify,
     )
     return scene, Source(file, digest_of(data)(), None), stamps
+
+
+def _read_parts(
+    file: str, options: AccuracyOptions, duration: float | None
+) -> tuple[Scene, Source, Stamps]:
+    """Return the parts of a mesh file as a scene, as `_read`."""
+    from obbcli.files import file_of, stamp_of
+    from obbcli.motion.assembly import load_parts
+    from obbcli.report.record import Source
+    from obbcli.scene import Scene
+
+    stamps = {file: stamp_of(file_of(file))}
+    assembly = load_parts(file)
+    scene = Scene(assembly, (), duration, options.accuracy())
+    return scene, Source(file, assembly.sha256, None), stamps
 
 
 def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
@@ -215,8 +235,36 @@ def _record(
     for path in mesh_paths(asked):
         digest = None if stamps is None else file_sha256(file_of(path), stamps[path])
         meshes.append(Source.of(path, digest, made[path]))
+    if not meshes:  # the parts of the scene's own file
+        meshes = [_file_of_parts(source, scene, found)]
     is_hashed = stamps is not None
-    return scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
+    record = scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
+    record["stats"] |= _decoded(scene)
+    return record
+
+
+def _decoded(scene: Scene) -> Record:
+    """Return how many meshes of a scene's own file were decoded; nothing of other scenes."""
+    from obbcli.motion.assembly import LazyMesh
+
+    shapes = {id(body.body.shape): body.body.shape for body in scene.bodies}
+    parts = [shape for shape in shapes.values() if isinstance(shape, LazyMesh)]
+    if not parts:
+        return {}
+    done = sum(shape.is_decoded for shape in parts)
+    return {"meshes_decoded": done, "meshes_possible": len(parts)}
+
+
+def _file_of_parts(source: Source, scene: Scene, found: ContactStream) -> Source:
+    """Return what is said of the mesh file that a scene's bodies are parts of.
+
+    Its triangles are counted where all of it was asked about: what is not is not decoded.
+    """
+    asked = found.asked
+    is_whole = len(asked.bodies) == len(scene.bodies)
+    counts = [body.triangle_count or 0 for body in found.stats.bodies]
+    notes = dict.fromkeys(note for shape in asked.shapes for note in shape.notes)
+    return source._replace(triangle_count=sum(counts) if is_whole else None, notes=tuple(notes))
 
 
 def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:

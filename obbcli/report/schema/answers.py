@@ -157,4 +157,8 @@ def _scene_stats() -> Schema:
         },
     )
     others = {"bodies": list_of(record(body)), "seconds": SECONDS}
-    return record(documented(SceneStats, counts | others))
+    decoded = {
+        "meshes_decoded": told(COUNT, "of a mesh file's own, where that is the scene"),
+        "meshes_possible": told(COUNT, "how many that file has; its parts are copies of them"),
+    }
+    return record(documented(SceneStats, counts | others) | decoded, optional=decoded)

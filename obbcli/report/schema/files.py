@@ -36,8 +36,32 @@ _PLACE = told(TEXT, "file and line, row or byte, or option")
 _REMEDY = told(TEXT, "what to do about it; empty where nothing can be said")
 
 
+def _part() -> Schema:
+    return record(
+        {
+            "path": told(TEXT, "names from the root down, joined by /; empty without a name"),
+            "triangle_count": COUNT,
+            "bounds": told(list_of(VECTOR, 2), "as placed, mesh units"),
+            "unit": told(or_null(TEXT), "that the file states; null where it states none"),
+            "is_watertight": told(FLAG, "whether every edge has two triangles that agree on it"),
+        }
+    )
+
+
 def info() -> Schema:
     """Return the schema of `obbtree info`."""
+    parts = record(
+        {
+            "kind": {"const": "assembly"},
+            "part_count": COUNT,
+            "mesh_count": told(COUNT, "meshes that the parts are placed copies of"),
+            "triangle_count": told(COUNT, "of all parts"),
+            "bounds": told(list_of(VECTOR, 2), "of all parts as placed, mesh units"),
+            "size": told(or_null(AMOUNT), "diagonal, mesh units; null beyond the largest double"),
+            "parts": told(list_of(_part()), "in the file's order"),
+        },
+        description="With --parts.",
+    )
     result = {
         "kind": word_of(("mesh", "tree")),
         "triangle_count": COUNT,
@@ -53,7 +77,8 @@ def info() -> Schema:
         "check": told(or_null(word_of(("passed",))), "null where --check was not asked for"),
     }
     inputs = record({"file": ref("source")})
-    return document("info", inputs, result=record(result), stats=record({"seconds": SECONDS}))
+    either: Schema = {"oneOf": [record(result), parts]}
+    return document("info", inputs, result=either, stats=record({"seconds": SECONDS}))
 
 
 def _grain() -> Schema:

@@ -105,6 +105,9 @@ def _shape(shape: Shape) -> Mesh | ObbTree:
     """Return a tree as it is, and the mesh of all else."""
     if isinstance(shape, (Mesh, ObbTree)):
         return shape
+    decoded = getattr(shape, "mesh", None)  # that of a part
+    if isinstance(decoded, Mesh):
+        return decoded
     path = Path(shape)  # type: ignore[arg-type]  # a Body holds nothing else
     return ObbTree.open(path) if begins_as_tree(path) else load_mesh(path)
 
