@@ -18,6 +18,7 @@ from moving_sets import DURATION, MOTIONS, OUTCOMES, mesh_pairs, normalized, que
 from scenes.pairs import pairs
 
 import obbcli
+from obbcli.mesh import known_suffixes
 from obbcli.tree.options import Fit, Split
 
 if TYPE_CHECKING:
@@ -192,7 +193,7 @@ def _root_rows(meshes: Path | None) -> Iterator[Row]:
     """Yield each mesh's root boxes against `trimesh.bounds.oriented_bounds`."""
     import trimesh
 
-    names = sorted(path for path in SAMPLES.iterdir() if path.suffix != ".py" and path.is_file())
+    names = sorted(path for path in SAMPLES.iterdir() if path.suffix in known_suffixes())
     for path in [*names, *(sorted(Path(meshes).glob("*.obj")) if meshes else ())]:
         mesh = obbcli.load_mesh(path)
         theirs = math.prod(trimesh.bounds.oriented_bounds(mesh.vertices)[1])

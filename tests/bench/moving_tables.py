@@ -28,6 +28,34 @@ def tables(rows: Sequence[Row]) -> str:
     return "\n\n".join([checked, *(f"{title}:\n\n{text}" for title, text in parts.items())])
 
 
+def short(rows: Sequence[Row]) -> str:
+    """Return what a page has room for: the largest blobs, and how often others erred."""
+    asked, hits = (sum(_notes(row, OURS)[name] for row in rows) for name in ("asked", "hits"))
+    most = max(row.triangles for row in rows)
+    who = [OURS, LOOP, ADVANCEMENT]
+    lines = [["motion", "outcome", *who]]
+    for row in (row for row in rows if row.triangles == most):
+        times = [time_text(row.timings[one].median) for one in who]
+        lines.append([*row.case.split(" / ")[1:], *times])
+    judged = [["who", "asked", "misses", "false hits", "earliest", "latest", "time"]]
+    peers = (
+        one for one in _others(rows) if "samples" not in one and one not in (LOOP, ADVANCEMENT)
+    )
+    for one in (LOOP, ADVANCEMENT, *peers):
+        asked_of, misses, false, _, earliest, latest, time = _summed(rows, one)
+        judged.append([one, asked_of, misses, false, earliest, latest, time])
+    return "\n\n".join(
+        [
+            f"{asked:,} questions, {hits:,} contacts; every answer of {OURS} checked: none wrong.",
+            f"Medians of {most:,} triangles each:",
+            markdown(lines),
+            "Answers of others over all meshes, with the errors of their times in parts of the\n"
+            "duration and the range of their medians:",
+            markdown(judged),
+        ]
+    )
+
+
 def _notes(row: Row, who: str) -> Any:
     return row.notes[who]
 

@@ -34,7 +34,7 @@ FIGURES = re.compile(
     r"(?P<begin><!-- figures: (?P<name>[\w-]+) -->\n).*?(?P<end><!-- end of figures -->)", re.DOTALL
 )
 TABLES = {
-    "first contact": moving_tables.tables,
+    "first contact": moving_tables.short,
     "fits": bench_fits.tables,
     "hostile": bench_hostile.tables,
 }
@@ -79,16 +79,13 @@ def page(text: str) -> str:
 def told(machine: Mapping[str, Any], bench: Mapping[str, Any]) -> str:
     """Return machine, date, load and command of a bench, and its tables."""
     place = f"{machine['cores']} cores of {machine['processor']}"
-    lines = [
-        f"Measured {bench['measured']} on {place}",
-        f"at a load of {bench['load']:g}: `{bench['command']}`.",
-    ]
+    when = f"Measured {bench['measured']} on {place} at a load of {bench['load']:g}"
     rows = rows_of(bench)
     tables = []
     for name in dict.fromkeys(row.bench for row in rows):
         some = [row for row in rows if row.bench == name]
         tables.append(f"**{name}**\n\n{TABLES.get(name, medians)(some)}")
-    return "\n".join(lines) + "\n\n" + "\n\n".join(tables)
+    return f"{when}: `{bench['command']}`.\n\n" + "\n\n".join(tables)
 
 
 def medians(rows: Sequence[Row]) -> str:
