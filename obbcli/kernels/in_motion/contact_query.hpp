@@ -220,7 +220,8 @@ class ContactQuery {
     std::vector<Entry> stalled_; // pairs that rounding lets nobody push on, earliest first
     double stall_end_ = 0;       // once all pairs are past this time, the stalled ones are settled
     std::uint64_t stall_pops_ = 0; // or after so many pops
-    bool is_patient_ = true;       // whether these may still be raised
+    std::optional<Contact> near_;  // what is known of them then
+    bool is_near_proven_ = false;  // whether it is contact for certain, at the end of its bracket
     std::uint64_t exact_pops_ = 0; // when `exact_` was found
     std::vector<Contact> found_;              // of `each_pair`, not taken yet
     std::unordered_set<std::uint64_t> known_; // the pairs of all contacts found

@@ -22,12 +22,12 @@ constexpr double kShortest = 0x1p-52;
 constexpr int kHalvings = 12;
 // Of the bodies' size: what rounding must at least tell apart for a stall to mean a contact.
 constexpr double kSameDistance = 0x1p-16;
-// Of so many stalled pairs each is looked at.
+// Of so many stalled pairs each is looked at for contact.
 constexpr std::size_t kMostStalled = 64;
 // Pops in which others may prove contact while pairs are stalled, and in which they may get past
 // the time at which those are no longer near.
 constexpr std::uint64_t kStallPops = 2000;
-constexpr std::uint64_t kNearPops = 0x4000;
+constexpr std::uint64_t kNearPops = 0x10'0000;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -104,13 +104,20 @@ bool ContactQuery::is_near_enough(const Entry& entry) {
     return true;
 }
 
+// Once it is known until when the stalled pairs are near, another one is seen to have parted by
+// then, or else the time is later.
 void ContactQuery::stall(const Entry& entry) {
-    if (stalled_.empty()) {
-        stall_pops_ = counts_.pops + kStallPops;
-        stall_end_ = entry.time + time_tolerance_;
-    }
-    if (stalled_.size() < kMostStalled) {
+    if (!near_) {
+        if (stalled_.empty()) {
+            stall_pops_ = counts_.pops + kStallPops;
+            stall_end_ = entry.time + time_tolerance_;
+        }
         stalled_.push_back(entry);
+    } else if (!(gap_at(entry, near_->high).low > options_.limits.clearance)) {
+        const Nearness near = nearness_from(entry, options_.limits.clearance);
+        near_->high = std::max(near_->high, near.end);
+        stall_end_ = near_->high;
+        is_near_proven_ = near.is_contact;
     }
 }
 
@@ -188,17 +195,21 @@ std::optional<Contact> ContactQuery::undecided(std::span<const Entry> stalled) {
     }
     double proven = kInfinity, high = first.time;
     for (const Entry& entry : stalled) {
+        if (high > first.time && gap_at(entry, high).low > options_.limits.clearance) {
+            continue; // it has parted by then
+        }
         const Nearness near = nearness_from(entry, options_.limits.clearance);
         (near.is_contact ? proven : high) =
             near.is_contact ? std::min(proven, near.end) : std::max(high, near.end);
     }
-    return as_near(stalled, first.time, proven < kInfinity ? proven : high);
+    is_near_proven_ = proven < kInfinity;
+    return as_near(stalled, first.time, is_near_proven_ ? proven : high);
 }
 
 // Of the stalled pairs, the one that is nearest at both ends of the bracket.
 Contact ContactQuery::as_near(std::span<const Entry> stalled, double low, double high) {
     Contact contact{low, high, Evidence::kWithinTolerance, {}, {}, kInfinity, 0};
-    for (const Entry& entry : stalled) {
+    for (const Entry& entry : stalled.first(std::min(stalled.size(), kMostStalled))) {
         const double distance = std::max(gap_at(entry, low).high, gap_at(entry, high).high);
         if (distance < contact.distance) {
             contact.distance = distance;
@@ -224,27 +235,26 @@ void ContactQuery::end_stalled(const Entry& entry) {
 // first stalled pair, if that is proven; else all pairs are seen past the time until which the
 // stalled ones are near, so that the bracket holds what any of them may do.
 void ContactQuery::settle_stalled(double next) {
-    std::optional<Contact> contact = soon_after(stalled_);
-    const bool is_proven = contact.has_value();
-    contact = is_proven ? contact : undecided(stalled_);
-    if (!contact) {
-        give_up(stalled_.front().time);
+    if (!near_) {
+        const std::span<const Entry> stalled{stalled_};
+        near_ = soon_after(stalled.first(std::min(stalled.size(), kMostStalled)));
+        is_near_proven_ = near_.has_value();
+        near_ = near_ ? near_ : undecided(stalled);
+        if (!near_) {
+            give_up(stalled_.front().time);
+            return;
+        }
+        stall_pops_ = counts_.pops + kNearPops;
+        stall_end_ = near_->high;
+    }
+    const bool is_out_of_patience = counts_.pops > stall_pops_;
+    if (!is_near_proven_ && !is_out_of_patience && next <= near_->high && near_->high < duration_) {
         return;
     }
-    if (!is_proven && next <= contact->high && contact->high < duration_) {
-        if (is_patient_) {
-            stall_end_ = contact->high;
-            stall_pops_ = counts_.pops + kNearPops;
-            is_patient_ = false;
-            return;
-        }
-        if (counts_.pops <= stall_pops_ && stalled_.size() < kMostStalled) {
-            stall_end_ = contact->high;
-            return;
-        }
-        contact = as_near(stalled_, stalled_.front().time, duration_);
+    if (near_->evidence == Evidence::kWithinTolerance && !is_near_proven_) {
+        near_ = as_near(stalled_, near_->low, is_out_of_patience ? duration_ : near_->high);
     }
-    report(*contact);
+    report(*near_);
 }
 
 } // namespace obb
