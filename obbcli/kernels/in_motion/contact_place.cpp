@@ -1,9 +1,7 @@
-// Where a contact is: points, normals and the features that meet.
-#include "in_motion/contact_query.hpp"
-#include "primitives/contact_normals.hpp"
+#include "in_motion/contact_place.hpp"
 
 #include "nearest/closest_points.hpp"
-#include "numbers/scale.hpp"
+#include "primitives/contact_normals.hpp"
 #include "primitives/pair_query.hpp"
 
 #include <algorithm>
@@ -50,31 +48,11 @@ Vec3 nearest_in(const Obb& box, Vec3 p) {
     return result;
 }
 
-} // namespace
-
-// From the query's frame, whose origin is A's pivot, in mesh units.
-Vec3 ContactQuery::in_world(Vec3 point, double low) const {
-    const Vec3 pivot = a_.screw().pivot + low * a_.screw().linear_velocity;
-    return pivot + scaled(point, length_exponent_);
-}
-
-ContactPlace ContactQuery::place(const Contact& contact) {
-    ContactPlace place = contact.evidence == Evidence::kBoxes ? place_of_boxes(contact)
-                         : is_translation_ && clearance_ == 0 ? place_in_translation(contact)
-                                                              : place_of_triangles(contact);
-    place.point = 0.5 * place.point_a + 0.5 * place.point_b;
-    for (Vec3* v : {&place.point, &place.point_a, &place.point_b, &place.normal, &place.normal_a,
-                    &place.normal_b}) {
-        *v = *v + Vec3{0, 0, 0}; // no negative zeros
-    }
-    return place;
-}
-
 // The exact question about the pair knows its features as well.
-ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
+ContactPlace place_in_translation(const MovingPair& pair, const Contact& contact) {
     const std::optional<PairContact> found =
-        first_contact(a_.posed_triangle(contact.a), b_.posed_triangle(contact.b),
-                      linear_motion());
+        first_contact(pair.a().posed_triangle(contact.a), pair.b().posed_triangle(contact.b),
+                      pair.linear_motion());
     return {found->point,
             found->point,
             found->touch.normal,
@@ -83,16 +61,12 @@ ContactPlace ContactQuery::place_in_translation(const Contact& contact) const {
             feature_code(found->touch.feature_a.dimension, found->touch.feature_b.dimension)};
 }
 
-ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
-    const double time = std::ldexp(contact.low, -time_exponent_);
-    set_time(time);
-    const SpinningTriangle a(a_.triangle(contact.a), a_.spin());
-    const SpinningTriangle b(b_.triangle(contact.b), b_.spin());
-    const MovingFrame now = frame(0, time);
-    Triangle moved = b.points;
-    for (Vec3& p : moved) {
-        p = p + now.between;
-    }
+ContactPlace place_of_triangles(MovingPair& pair, const Contact& contact) {
+    const double time = pair.scaled_time(contact.low);
+    const PlacedTriangles placed = pair.triangles_at({contact.a, contact.b}, time);
+    const SpinningTriangle &a = placed.a, &b = placed.b;
+    const Triangle& moved = placed.moved_b;
+    const MovingFrame now = pair.frame(0, time);
     const TriangleDistance closest = measure(a.points, moved);
     const bool is_apart = closest.low > 0;
     Vec3 point_a = closest.point_a, point_b = closest.point_b;
@@ -109,8 +83,8 @@ ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
                                  : unit_or(point_b - point_a, unit_or(towards_b, Vec3{1, 0, 0}));
     const Vec3 normal = step.time > 0 ? step.normal : last_resort;
     const double size = a.size + b.size;
-    return {in_world(point_a, contact.low),
-            in_world(point_b, contact.low),
+    return {pair.in_world(point_a, contact.low),
+            pair.in_world(point_b, contact.low),
             normal,
             face_normal(a.points, Feature{}, normal),
             face_normal(moved, Feature{}, -normal),
@@ -118,17 +92,32 @@ ContactPlace ContactQuery::place_of_triangles(const Contact& contact) {
                          dimension_along(moved, -normal, size))};
 }
 
-ContactPlace ContactQuery::place_of_boxes(const Contact& contact) {
-    const double time = std::ldexp(contact.low, -time_exponent_);
-    set_time(time);
-    const Obb a = a_.box(contact.a);
-    Obb b = b_.box(contact.b);
-    b.center = b.center + frame(0, time).between;
+ContactPlace place_of_boxes(MovingPair& pair, const Contact& contact) {
+    const double time = pair.scaled_time(contact.low);
+    pair.set_time(time);
+    const Obb a = pair.a().box(contact.a);
+    Obb b = pair.b().box(contact.b);
+    b.center = b.center + pair.frame(0, time).between;
     const Vec3 point_a = nearest_in(a, b.center);
     const Vec3 point_b = nearest_in(b, point_a);
     const Vec3 normal = unit_or(b.center - a.center, Vec3{1, 0, 0});
-    return {in_world(point_a, contact.low),    in_world(point_b, contact.low),     normal,
-            smooth_normal(a, point_a, normal), smooth_normal(b, point_b, -normal), kBoxFeature};
+    return {pair.in_world(point_a, contact.low), pair.in_world(point_b, contact.low), normal,
+            smooth_normal(a, point_a, normal),   smooth_normal(b, point_b, -normal),  kBoxFeature};
+}
+
+} // namespace
+
+ContactPlace place_of(MovingPair& pair, const Contact& contact) {
+    const bool is_exact = pair.is_translation() && pair.clearance() == 0;
+    ContactPlace place = contact.evidence == Evidence::kBoxes ? place_of_boxes(pair, contact)
+                         : is_exact                           ? place_in_translation(pair, contact)
+                                                              : place_of_triangles(pair, contact);
+    place.point = 0.5 * place.point_a + 0.5 * place.point_b;
+    for (Vec3* v : {&place.point, &place.point_a, &place.point_b, &place.normal, &place.normal_a,
+                    &place.normal_b}) {
+        *v = *v + Vec3{0, 0, 0}; // no negative zeros
+    }
+    return place;
 }
 
 } // namespace obb

@@ -31,7 +31,7 @@ bool ContactQuery::has_limits() const { return options_.limits.boxes != BoxLimit
 // Asks two triangles under a pair before all that may be earlier is opened: of pairs that touch at
 // one time the boxes are all earlier than the first triangles.
 void ContactQuery::probe(const Entry& entry) {
-    if (!is_translation_ || options_.each_pair || has_limits() ||
+    if (!pair_.is_translation() || options_.each_pair || has_limits() ||
         counts_.pops < std::max(next_probe_, kProbePatience)) {
         return;
     }
@@ -39,15 +39,16 @@ void ContactQuery::probe(const Entry& entry) {
     Entry at = entry;
     while (!at.a.is_triangle() || !at.b.is_triangle()) {
         at = nearer_half(at, at.b.is_triangle() ||
-                                 (!at.a.is_triangle() && size_of(a_, at.a) >= size_of(b_, at.b)));
+                                 (!at.a.is_triangle() && MovingPair::size_of(pair_.a(), at.a) >=
+                                                             MovingPair::size_of(pair_.b(), at.b)));
     }
-    clearance_ > 0 ? solve_within_clearance(at) : meet_in_translation(at);
+    pair_.clearance() > 0 ? solve_within_clearance(at) : meet_in_translation(at);
 }
 
 // Of a leaf, its first triangle.
 ContactQuery::Entry ContactQuery::nearer_half(const Entry& entry, bool opens_a) {
     const NodeRef &ref = opens_a ? entry.a : entry.b, other = opens_a ? entry.b : entry.a;
-    const TreeView& tree = (opens_a ? a_ : b_).tree();
+    const TreeView& tree = (opens_a ? pair_.a() : pair_.b()).tree();
     const Node& node = tree.node(ref);
     tree.prepare(ref);
     const bool is_leaf = TreeView::is_leaf(node);
@@ -55,32 +56,31 @@ ContactQuery::Entry ContactQuery::nearer_half(const Entry& entry, bool opens_a) 
     const std::array<NodeRef, 2> parts =
         is_leaf ? std::array{first, first} : tree.children(ref, node);
     const std::array<NodeRef, 2> others{other, other};
-    set_time(entry.time);
-    place(opens_a ? parts : others, opens_a ? others : parts);
-    const std::array<double, 2> steps = times_apart(
-        *motion_, *boxes_, frame(a_.box_error() + b_.box_error(), entry.time), duration_);
+    pair_.set_time(entry.time);
+    pair_.place(opens_a ? parts : others, opens_a ? others : parts);
+    const std::array<double, 2> steps = pair_.steps(pair_.box_frame(entry.time), pair_.duration());
     counts_.box_tests += 2;
     Entry half = entry;
     (opens_a ? half.a : half.b) = parts[steps[1] < steps[0] ? 1 : 0];
     return half;
 }
 
-// Of bodies that come within a clearance, the plane's two sides are that far apart then, and further
-// before: what holds of contact holds of nearness.
+// Of bodies that come within a clearance, the plane's two sides are that far apart then, and
+// further before: what holds of contact holds of nearness.
 void ContactQuery::set_planes(const Entry& entry, const Touch& touch) {
     planes_.clear();
     exact_pops_ = counts_.pops;
     if (has_limits()) {
         return;
     }
-    const LinearMotion motion = linear_motion();
-    const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
+    const LinearMotion motion = pair_.linear_motion();
+    const Triangle a = pair_.a().posed_triangle(entry.a), b = pair_.b().posed_triangle(entry.b);
     for (const auto& plane : {ContactPlane::of_axis(a, b, motion, touch),
                               ContactPlane::of_motion(a, b, motion, touch)}) {
         if (plane) {
             const Vec3 n = plane->normal();
-            planes_.push_back(
-                {*plane, n, top_of(a_.triangle(entry.a), n), -top_of(b_.triangle(entry.b), -n)});
+            planes_.push_back({*plane, n, top_of(pair_.a().triangle(entry.a), n),
+                               -top_of(pair_.b().triangle(entry.b), -n)});
         }
     }
     may_all_tie_ = true;
@@ -110,8 +110,8 @@ bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
         }
         return height <= top + kBoxRounding * (norm_1(box.half_extents) + norm_1(box.center));
     };
-    return reaches(a_, entry.a, tie.normal, tie.top_of_a) &&
-           reaches(b_, entry.b, -tie.normal, -tie.bottom_of_b);
+    return reaches(pair_.a(), entry.a, tie.normal, tie.top_of_a) &&
+           reaches(pair_.b(), entry.b, -tie.normal, -tie.bottom_of_b);
 }
 
 // Looks for a plane that may prove that nothing of a pair touches before the earliest contact
@@ -121,8 +121,8 @@ void ContactQuery::look_for_tie(const Entry& entry) {
     if (may_all_tie_) {
         may_all_tie_ = false;
         Entry all = entry;
-        all.a = a_.tree().root();
-        all.b = b_.tree().root();
+        all.a = pair_.a().tree().root();
+        all.b = pair_.b().tree().root();
         if (waits_for(all, entry, 0)) {
             return;
         }
@@ -136,8 +136,8 @@ bool ContactQuery::waits_for(const Entry& candidate, const Entry& entry, std::si
     for (; plane < planes_.size(); ++plane) {
         if (are_sides(candidate, planes_[plane])) {
             wait_ = Wait{candidate, entry, plane, {}, candidate.a.begin, candidate.b.begin, {}};
-            wait_->preparations[0].begin(a_.tree(), candidate.a);
-            wait_->preparations[1].begin(b_.tree(), candidate.b);
+            wait_->preparations[0].begin(pair_.a().tree(), candidate.a);
+            wait_->preparations[1].begin(pair_.b().tree(), candidate.b);
             return true;
         }
     }
@@ -167,14 +167,14 @@ bool ContactQuery::end_wait(SliceClock& clock) {
         if (clock.is_over()) {
             return false;
         }
-        holds = all_hold(a_, wait.next_a, wait.seen[0],
+        holds = all_hold(pair_.a(), wait.next_a, wait.seen[0],
                          [&](const Vec3& p) { return plane.holds_a(p); });
     }
     for (; holds && wait.next_b < wait.candidate.b.end; ++wait.next_b) {
         if (clock.is_over()) {
             return false;
         }
-        holds = all_hold(b_, wait.next_b, wait.seen[1],
+        holds = all_hold(pair_.b(), wait.next_b, wait.seen[1],
                          [&](const Vec3& p) { return plane.holds_b(p); });
     }
     const Entry candidate = wait.candidate, entry = wait.entry;

@@ -1,6 +1,5 @@
 // What a contact query does where it has come down to two triangles.
 #include "in_motion/contact_query.hpp"
-#include "in_motion/intersection_proof.hpp"
 
 #include "primitives/first_within.hpp"
 #include "primitives/pair_query.hpp"
@@ -10,15 +9,11 @@
 
 namespace obb {
 
-LinearMotion ContactQuery::linear_motion() const {
-    return {a_.screw().linear_velocity, b_.screw().linear_velocity, options_.duration};
-}
-
 // Without turning, a pair's first contact is exact. Eberly 2008 §4.2.2.
 void ContactQuery::meet_in_translation(const Entry& entry) {
-    const LinearMotion motion = linear_motion();
+    const LinearMotion motion = pair_.linear_motion();
     ++counts_.triangle_tests;
-    const Triangle a = a_.posed_triangle(entry.a), b = b_.posed_triangle(entry.b);
+    const Triangle a = pair_.a().posed_triangle(entry.a), b = pair_.b().posed_triangle(entry.b);
     const PairVerdict verdict = test_pair(a, b, motion);
     if (!verdict.intersects) {
         counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
@@ -26,11 +21,11 @@ void ContactQuery::meet_in_translation(const Entry& entry) {
     }
     ++counts_.exact_triangle_tests;
     const std::optional<PairContact> found = obb::first_contact(a, b, motion);
-    const double high = std::ldexp(std::min(found->time_above, options_.duration), -time_exponent_);
+    const double high = pair_.scaled_time(std::min(found->time_above, options_.duration));
     if (exact_ && exact_->high <= high) {
         return;
     }
-    const double low = std::ldexp(found->time_below, -time_exponent_);
+    const double low = pair_.scaled_time(found->time_below);
     keep({low, high, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
     if (!options_.each_pair) {
         set_planes(entry, found->touch);
@@ -54,15 +49,16 @@ void ContactQuery::meet_within_clearance(const Entry& entry) {
         return;
     }
     ++counts_.triangle_tests;
-    const Gap gap = gap_at(entry, entry.time);
-    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
-    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
-    const TriangleStep step = time_apart(a, b, frame(0, entry.time), gap.direction);
+    const Gap gap = pair_.gap_at(entry.refs(), entry.time);
+    const PlacedTriangles placed = pair_.triangles_at(entry.refs(), entry.time);
+    const MovingFrame now = pair_.frame(0, entry.time);
+    const TriangleStep step = time_apart(placed.a, placed.b, now, gap.direction);
     const std::optional<double> time = later(entry, step.time);
     if (!time || (exact_ && *time >= exact_->high)) {
         return;
     }
-    if (gap.high <= options_.limits.clearance) { // no pair is any earlier, and this one is near already
+    if (gap.high <=
+        options_.limits.clearance) { // no pair is any earlier, and this one is near already
         keep({entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b, gap.high, 0});
     } else if (*time - entry.time > time_tolerance_) {
         push({*time, entry.end, entry.a, entry.b, entry.window});
@@ -74,18 +70,18 @@ void ContactQuery::meet_within_clearance(const Entry& entry) {
 void ContactQuery::solve_within_clearance(const Entry& entry) {
     ++counts_.exact_triangle_tests;
     const std::optional<Approach> found =
-        first_within(a_.posed_triangle(entry.a), b_.posed_triangle(entry.b), linear_motion(),
-                     options_.limits.clearance);
+        first_within(pair_.a().posed_triangle(entry.a), pair_.b().posed_triangle(entry.b),
+                     pair_.linear_motion(), options_.limits.clearance);
     if (!found) {
         return;
     }
-    const double high = std::ldexp(std::min(found->time_above, options_.duration), -time_exponent_);
+    const double high = pair_.scaled_time(std::min(found->time_above, options_.duration));
     if (exact_ && exact_->high <= high) {
         return;
     }
-    const double low = std::ldexp(found->time_below, -time_exponent_);
+    const double low = pair_.scaled_time(found->time_below);
     // A graze for an instant may be over at the next double.
-    const double bound = gap_at(entry, high).high;
+    const double bound = pair_.gap_at(entry.refs(), high).high;
     const double distance = found->is_within ? std::min(options_.limits.clearance, bound) : bound;
     keep({low, high, Evidence::kWithinTolerance, entry.a, entry.b, distance, 0});
     if (!options_.each_pair) {
@@ -93,26 +89,22 @@ void ContactQuery::solve_within_clearance(const Entry& entry) {
     }
 }
 
-double ContactQuery::triangle_error(const SpinningTriangle& a, const SpinningTriangle& b) const {
-    return relative_ * (a.size + b.size) + between_error_;
-}
-
 void ContactQuery::meet_triangles(const Entry& entry) {
     if (options_.each_pair && entry.time == 0 && meet_at_start(entry)) {
         return;
     }
-    set_time(entry.time);
+    pair_.set_time(entry.time);
     ++counts_.triangle_tests;
-    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
-    const SpinningTriangle b(b_.triangle(entry.b), b_.spin());
-    const MovingFrame now = frame(0, entry.time);
+    const SpinningTriangle a(pair_.a().triangle(entry.a), pair_.a().spin());
+    const SpinningTriangle b(pair_.b().triangle(entry.b), pair_.b().spin());
+    const MovingFrame now = pair_.frame(0, entry.time);
     TriangleStep step;
-    if (clearance_ == 0) {
+    if (pair_.clearance() == 0) {
         step = time_apart(a, b, now, Vec3{0, 0, 0});
     }
     // The features' axes alone cannot prove two vertices further apart than they themselves show.
     if (step.time == 0) {
-        step = time_apart(a, b, now, gap_at(entry, entry.time).direction);
+        step = time_apart(a, b, now, pair_.gap_at(entry.refs(), entry.time).direction);
     }
     const std::optional<double> time = later(entry, step.time);
     if (!time) {
@@ -124,19 +116,19 @@ void ContactQuery::meet_triangles(const Entry& entry) {
     }
     if (*time > entry.time) {
         push({*time, entry.end, entry.a, entry.b, entry.window});
-    } else if (step.gap > 4 * triangle_error(a, b) + clearance_) {
+    } else if (step.gap > 4 * pair_.triangle_error(a, b) + pair_.clearance()) {
         give_up(entry.time);
     } else if (options_.each_pair) {
-        end_stalled(entry);
+        settle(stalled_.settle_alone(pair_, {entry.refs(), entry.time}), entry.time);
     } else {
-        stall(entry);
+        stalled_.add(pair_, {entry.refs(), entry.time}, counts_.pops);
     }
 }
 
 // Whether the pair meets at t = 0, decided exactly.
 bool ContactQuery::meet_at_start(const Entry& entry) {
-    const PairVerdict verdict =
-        test_pair(a_.posed_triangle(entry.a), b_.posed_triangle(entry.b), LinearMotion{});
+    const PairVerdict verdict = test_pair(pair_.a().posed_triangle(entry.a),
+                                          pair_.b().posed_triangle(entry.b), LinearMotion{});
     counts_.exact_triangle_tests += verdict.exact ? 1 : 0;
     if (verdict.intersects) {
         report({0, 0, Evidence::kIntersecting, entry.a, entry.b, 0, 0});
@@ -147,15 +139,15 @@ bool ContactQuery::meet_at_start(const Entry& entry) {
 // Looks for a proven contact a little later: at shrinking fractions of the tolerance, since a graze
 // is over soon. True where the pair needs no more attention.
 bool ContactQuery::prove_contact(const Entry& entry) {
-    if ((distance_tolerance_ >= 0 || clearance_ > 0) && is_near_enough(entry)) {
+    if ((distance_tolerance_ >= 0 || pair_.clearance() > 0) && is_near_enough(entry)) {
         return true;
     }
     for (const double share : {0.5, 0x1p-3, 0x1p-6, 0x1p-12}) {
-        const double time = std::min(entry.time + share * time_tolerance_, duration_);
+        const double time = std::min(entry.time + share * time_tolerance_, pair_.duration());
         if (proof_ && proof_->time <= time) {
             continue;
         }
-        if (!surely_intersect_at(entry, time)) {
+        if (!pair_.surely_intersect_at(entry.refs(), time)) {
             continue;
         }
         if (options_.each_pair) {
@@ -167,15 +159,24 @@ bool ContactQuery::prove_contact(const Entry& entry) {
     return false;
 }
 
-bool ContactQuery::surely_intersect_at(const Entry& entry, double time) {
-    set_time(time);
-    const SpinningTriangle a(a_.triangle(entry.a), a_.spin());
-    SpinningTriangle b(b_.triangle(entry.b), b_.spin());
-    const Vec3 between = pivot_between_ + time * closing_velocity_;
-    for (Vec3& p : b.points) {
-        p = p + between;
+// Whether points of the pair are as near as asked, which ends the search: by the time at which they
+// are in contact, or until which they are as near.
+bool ContactQuery::is_near_enough(const Entry& entry) {
+    const double tolerance = pair_.mesh_length(distance_tolerance_);
+    const double enough = std::max({tolerance, options_.limits.clearance, 0.0});
+    const double distance = pair_.gap_at(entry.refs(), entry.time).high;
+    if (!(distance <= enough)) {
+        return false;
     }
-    return surely_intersect(a.points, b.points, triangle_error(a, b));
+    Contact contact{entry.time, entry.time, Evidence::kWithinTolerance, entry.a, entry.b,
+                    distance,   0};
+    if (distance > options_.limits.clearance) {
+        contact.high =
+            nearness_from(pair_, {entry.refs(), entry.time}, enough, time_tolerance_).last;
+        contact.distance = std::max(distance, pair_.gap_at(entry.refs(), contact.high).high);
+    }
+    report(contact);
+    return true;
 }
 
 } // namespace obb

@@ -130,13 +130,13 @@ class ExactApproach {
     [[nodiscard]] std::optional<ApproachStart> of_vertices(std::size_t i, std::size_t j) const {
         const WideVec<N> r = in_.b[j] - in_.a[i];
         const WideVec<N>& w = in_.velocity;
-        return start(Quadratic<2 * N>{dot(w, w), dot(r, w), dot(r, r) - square()}, std::array<Bound, 0>{});
+        return start(Quadratic<2 * N>{dot(w, w), dot(r, w), dot(r, r) - square()},
+                     std::array<Bound, 0>{});
     }
 
-    [[nodiscard]] std::optional<ApproachStart> of_vertex_and_edge(const WideVec<N>& p,
-                                                                  const std::array<WideVec<N>, 3>& t,
-                                                                  std::size_t k,
-                                                                  bool vertex_is_of_b) const {
+    [[nodiscard]] std::optional<ApproachStart>
+    of_vertex_and_edge(const WideVec<N>& p, const std::array<WideVec<N>, 3>& t, std::size_t k,
+                       bool vertex_is_of_b) const {
         const WideVec<N> e = edge(t, k);
         if (e.is_zero()) {
             return std::nullopt; // its ends are vertices
@@ -178,10 +178,8 @@ class ExactApproach {
         const auto on_e = cross(f, n), on_f = cross(e, n);
         const auto at_e = dot(on_e, r), rate_e = dot(on_e, in_.velocity);
         const auto at_f = dot(on_f, r), rate_f = dot(on_f, in_.velocity);
-        const std::array<Bound, 4> bounds{{{at_e, rate_e},
-                                           {length - at_e, -rate_e},
-                                           {at_f, rate_f},
-                                           {length - at_f, -rate_f}}};
+        const std::array<Bound, 4> bounds{
+            {{at_e, rate_e}, {length - at_e, -rate_e}, {at_f, rate_f}, {length - at_f, -rate_f}}};
         return start(across(n, r, in_.velocity), bounds);
     }
 
@@ -197,8 +195,8 @@ class ExactApproach {
     }
 
     template <std::size_t M, std::size_t Count>
-    [[nodiscard]] std::optional<ApproachStart>
-    start(const Quadratic<M>& gap, const std::array<Bound, Count>& bounds) const {
+    [[nodiscard]] std::optional<ApproachStart> start(const Quadratic<M>& gap,
+                                                     const std::array<Bound, Count>& bounds) const {
         Time first{}, last = in_.duration;
         for (const Bound& bound : bounds) {
             const int rate = bound.rate.sign();

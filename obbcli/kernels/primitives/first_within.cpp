@@ -62,24 +62,24 @@ std::optional<Approach> first_within(const Triangle& a, const Triangle& b,
                                      const LinearMotion& motion, double clearance) {
     return with_exact_input(a, b, motion, clearance, [](const auto& input) {
         std::optional<Approach> first;
-        ExactApproach(input).visit_starts([&](const ApproachStart& start, AxisId axis,
-                                              std::uint8_t i, std::uint8_t j) {
-            if (!first) {
-                first = Approach{start.below, start.above, start.is_within, {}};
-            }
-            first->is_within = start.above < first->time_above
-                                   ? start.is_within
-                                   : first->is_within ||
-                                         (start.above == first->time_above && start.is_within);
-            first->time_below = std::min(first->time_below, start.below);
-            first->time_above = std::min(first->time_above, start.above);
-            const bool is_axis = start.by_gap && axis.kind != AxisKind::kNone;
-            if (is_axis && start.below <= first->time_below) {
-                first->touch.axis = axis;
-                first->touch.feature_a.points = static_cast<std::uint8_t>(1U << i);
-                first->touch.feature_b.points = static_cast<std::uint8_t>(1U << j);
-            }
-        });
+        ExactApproach(input).visit_starts(
+            [&](const ApproachStart& start, AxisId axis, std::uint8_t i, std::uint8_t j) {
+                if (!first) {
+                    first = Approach{start.below, start.above, start.is_within, {}};
+                }
+                first->is_within =
+                    start.above < first->time_above
+                        ? start.is_within
+                        : first->is_within || (start.above == first->time_above && start.is_within);
+                first->time_below = std::min(first->time_below, start.below);
+                first->time_above = std::min(first->time_above, start.above);
+                const bool is_axis = start.by_gap && axis.kind != AxisKind::kNone;
+                if (is_axis && start.below <= first->time_below) {
+                    first->touch.axis = axis;
+                    first->touch.feature_a.points = static_cast<std::uint8_t>(1U << i);
+                    first->touch.feature_b.points = static_cast<std::uint8_t>(1U << j);
+                }
+            });
         return first;
     });
 }
