@@ -66,7 +66,7 @@ bool DistanceQuery::advance(std::uint64_t max_pops) {
     SliceClock clock;
     for (;;) {
         if (wait_) {
-            if (!wait_->preparations[0].advance(clock) || !wait_->preparations[1].advance(clock)) {
+            if (!wait_->advance(clock)) {
                 return false;
             }
             end_wait();

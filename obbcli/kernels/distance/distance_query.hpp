@@ -6,6 +6,7 @@
 #include "descent/bound_queue.hpp"
 #include "descent/limits.hpp"
 #include "descent/placed_boxes.hpp"
+#include "descent/tie_search.hpp"
 #include "distance/distance_lanes.hpp"
 #include "nearest/closest_points.hpp"
 #include "shapes/pose.hpp"
@@ -64,7 +65,6 @@ class DistanceQuery {
         bool is_fine;               // whether the direction is known
         Vector3<Twofold> direction; // from A to B
     };
-    static constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
     // A node as the tests see it: its box, or the triangle that needs none.
     struct Side {
         NodeRef ref;
@@ -113,7 +113,6 @@ class DistanceQuery {
     // Faces along each other, of which boxes cannot tell whether any two are nearer than the rest:
     // all vertices of both nodes are looked at, along the direction that the least distance has.
     [[nodiscard]] bool may_tie(const Pair& pair) const;
-    [[nodiscard]] bool may_all_tie();
     [[nodiscard]] bool are_sides_apart(const Pair& pair);
     void look_for_tie(const Pair& pair);
     void wait_for(const Pair& candidate, const Pair& pair);
@@ -144,15 +143,8 @@ class DistanceQuery {
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points
     DistanceBounds best_{};
     Incumbent incumbent_{};
-    // How many triangles may be looked at for a tie; before there are many, and from then on.
-    std::array<std::uint32_t, 2> tie_limits_{kAnyNumber, kAnyNumber};
-    // Nodes that may tie as a whole, all of whose triangles are being made ready; and the pair that
-    // was popped, which they are or hold.
-    struct Wait {
-        Pair candidate, pair;
-        std::array<Preparation, 2> preparations;
-    };
-    std::optional<Wait> wait_;
+    std::array<TieCrowd, 2> crowds_; // before there are many ties, and from then on
+    std::optional<TieWait<Pair>> wait_;
     WalkCounts counts_;
 };
 

@@ -14,13 +14,9 @@ namespace obb {
 
 namespace {
 
-// Fewer triangles are opened as fast.
-constexpr std::uint32_t kCrowd = 16;
-// By how much boxes are larger than what they hold, of their size: their extents and axes are
-// rounded to float32.
-constexpr double kBoxRounding = 0x1p-21;
-// After a crowd that proved to be no tie only those of so much fewer triangles are looked at.
-constexpr std::uint32_t kFewer = 4;
+// How much nearer boxes may seem than what they hold, in the query's unit: those of both bodies,
+// whose extents sum to at most 3 each.
+constexpr double kSeemsNearer = 8 * kBoxRounding;
 
 // Posed coordinates in the query's unit stay below 3, differences below 6, and lengths of these
 // below 11. In doubles a projection of a difference on a direction with entries up to 1 is off by
@@ -61,20 +57,10 @@ class Summit {
 } // namespace
 
 bool DistanceQuery::may_tie(const Pair& pair) const {
-    return !is_diving() && high_ - pair.key <= 8 * kBoxRounding && !pair.a.is_triangle() &&
-           !pair.b.is_triangle() && pair.a.triangle_count() + pair.b.triangle_count() >= kCrowd &&
-           pair.a.triangle_count() + pair.b.triangle_count() <=
-               tie_limits_[has_many_ties() ? 1 : 0];
-}
-
-// The bodies as a whole come first, once: where they lie along each other nothing is left to do.
-bool DistanceQuery::may_all_tie() {
-    std::uint32_t& limit = tie_limits_[has_many_ties() ? 1 : 0];
-    if (limit < kAnyNumber) {
-        return false;
-    }
-    limit = kAnyNumber - 1;
-    return true;
+    return !is_diving() && high_ - pair.key <= kSeemsNearer && !pair.a.is_triangle() &&
+           !pair.b.is_triangle() &&
+           crowds_[has_many_ties() ? 1 : 0].may_look_at(pair.a.triangle_count() +
+                                                        pair.b.triangle_count());
 }
 
 bool DistanceQuery::are_sides_apart(const Pair& pair) {
@@ -82,8 +68,9 @@ bool DistanceQuery::are_sides_apart(const Pair& pair) {
     return are_boxes_apart(pair);
 }
 
+// The bodies as a whole come first: where they lie along each other nothing is left to do.
 void DistanceQuery::look_for_tie(const Pair& pair) {
-    if (may_all_tie()) {
+    if (crowds_[has_many_ties() ? 1 : 0].starts_with_all()) {
         Pair all{0.0, a_.tree().root(), b_.tree().root(), {}};
         all.key = bound(reach(a_, all.a), reach(b_, all.b));
         if (may_tie(all) && are_sides_apart(all)) {
@@ -98,15 +85,14 @@ void DistanceQuery::look_for_tie(const Pair& pair) {
     }
 }
 
-// To make all nodes of a tree takes longer than a slice may.
 void DistanceQuery::wait_for(const Pair& candidate, const Pair& pair) {
-    wait_ = Wait{candidate, pair, {}};
-    wait_->preparations[0].begin(a_.tree(), candidate.a);
-    wait_->preparations[1].begin(b_.tree(), candidate.b);
+    wait_ = TieWait<Pair>{candidate, pair, {}};
+    wait_->begin(a_.tree(), b_.tree());
 }
 
 void DistanceQuery::end_wait() {
     const Pair candidate = wait_->candidate, pair = wait_->pair;
+    const std::uint32_t count = wait_->triangle_count();
     wait_.reset();
     const double low = all_apart(candidate);
     const bool are_all =
@@ -119,8 +105,7 @@ void DistanceQuery::end_wait() {
         }
         return;
     }
-    const std::uint32_t count = candidate.a.triangle_count() + candidate.b.triangle_count();
-    tie_limits_[has_many_ties() ? 1 : 0] = count / kFewer;
+    crowds_[has_many_ties() ? 1 : 0].fail(count);
     const bool is_pair = candidate.a.slot == pair.a.slot && candidate.b.slot == pair.b.slot;
     if (!is_pair && are_sides_apart(pair)) {
         wait_for(pair, pair);

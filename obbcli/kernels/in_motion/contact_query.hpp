@@ -6,6 +6,7 @@
 #include "descent/bound_queue.hpp"
 #include "descent/limits.hpp"
 #include "descent/recent_vertices.hpp"
+#include "descent/tie_search.hpp"
 #include "in_motion/contact.hpp"
 #include "in_motion/contact_list.hpp"
 #include "in_motion/contact_place.hpp"
@@ -60,15 +61,19 @@ class ContactQuery {
     [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
-    // A pair that is proven apart before `time`. From `end` on, unless that is the duration, an
-    // entry for the pair it came from sees to it, if the window they share says that it has to.
+    // A pair of nodes, a node and a triangle, or two triangles, which waits in the queue. Its
+    // invariant: the pair is proven apart in [0, time), and the search answers for it in
+    // [time, end]. An entry whose end is before the duration lies in a window: the pair that the
+    // window was opened for waits in the queue too, with the window's end as its time, and answers
+    // for what comes later. It is looked at then only if some entry in the window needed it, that
+    // is, reached `end` without being proven apart until the duration.
     struct Entry {
         double time, end;
         NodeRef a, b;
-        std::uint32_t window = Windows::kWhole;
-        std::uint32_t opened = 0;   // the window that it was opened for before
-        std::uint32_t reopened = 0; // how often since the two were last seen to have parted
-        std::uint32_t next = 0;     // of a leaf that is opened, the first triangle not yet pushed
+        std::uint32_t window = Windows::kWhole; // the one that the entry lies in
+        std::uint32_t opened = Windows::kWhole; // the one that was opened for this pair before
+        std::uint32_t reopened = 0; // how many windows were, since the two last moved apart
+        std::uint32_t next = 0;     // of a leaf that is opened: its first triangle not yet pushed
 
         [[nodiscard]] PairRef refs() const { return {a, b}; }
     };
@@ -80,12 +85,10 @@ class ContactQuery {
         Vec3 normal;
         double top_of_a, bottom_of_b;
     };
-    // A pair whose vertices are being compared with a plane.
+    // Nodes whose vertices are being compared with a plane, and the triangles that come next.
     struct Wait {
-        Entry candidate; // the pair, or the bodies as a whole
-        Entry entry;
+        TieWait<Entry> nodes;
         std::size_t plane;
-        std::array<Preparation, 2> preparations;
         std::uint32_t next_a, next_b;
         std::array<SeenLately, 2> seen;
     };
@@ -141,8 +144,7 @@ class ContactQuery {
     std::vector<Tie> planes_; // of that
     std::uint64_t next_probe_ = 0;
     std::uint64_t tie_pops_ = 0;
-    bool may_all_tie_ = false;    // whether the bodies as a whole were not looked at yet
-    std::uint32_t tie_limit_ = 0; // how many triangles may be looked at for a tie
+    TieCrowd crowd_;
     std::optional<Wait> wait_;
     StalledPairs stalled_{0};
     std::uint64_t exact_pops_ = 0; // when `exact_` was found

@@ -16,12 +16,10 @@ namespace {
 // few questions get that far.
 constexpr std::uint64_t kProbePatience = 1024;
 constexpr std::uint64_t kTiePatience = 64;
-// Fewer triangles are opened as fast.
-constexpr std::uint32_t kCrowd = 16;
-// By how much boxes are larger than what they hold, of their size.
-constexpr double kBoxRounding = 0x1p-18;
-// After nodes that the plane cuts only those of so many times fewer triangles are looked at.
-constexpr std::uint32_t kFewer = 4;
+// By how much boxes may reach beyond a plane that what they hold does not cross, of the size of
+// their extents and of their distance from the pivot: they were turned as well, and the plane's
+// normal is rounded.
+constexpr double kReachesBeyond = 8 * kBoxRounding;
 
 } // namespace
 
@@ -83,8 +81,7 @@ void ContactQuery::set_planes(const Entry& entry, const Touch& touch) {
                                -top_of(pair_.b().triangle(entry.b), -n)});
         }
     }
-    may_all_tie_ = true;
-    tie_limit_ = std::numeric_limits<std::uint32_t>::max();
+    crowd_ = {};
     tie_pops_ = counts_.pops + kTiePatience;
 }
 
@@ -96,8 +93,7 @@ bool ContactQuery::may_tie(const Entry& entry) const {
     if (planes_.empty() || counts_.pops < tie_pops_) {
         return false;
     }
-    const std::uint32_t count = entry.a.triangle_count() + entry.b.triangle_count();
-    return count >= kCrowd && count <= tie_limit_;
+    return crowd_.may_look_at(entry.a.triangle_count() + entry.b.triangle_count());
 }
 
 // Whether boxes are on their own sides, but for what they are larger than what they hold.
@@ -108,7 +104,7 @@ bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
         for (std::size_t k = 0; k < 3; ++k) {
             height += box.half_extents[k] * std::fabs(dot(box.axes[k], n));
         }
-        return height <= top + kBoxRounding * (norm_1(box.half_extents) + norm_1(box.center));
+        return height <= top + kReachesBeyond * (norm_1(box.half_extents) + norm_1(box.center));
     };
     return reaches(pair_.a(), entry.a, tie.normal, tie.top_of_a) &&
            reaches(pair_.b(), entry.b, -tie.normal, -tie.bottom_of_b);
@@ -118,8 +114,7 @@ bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
 // known; else the pair is opened. The bodies as a whole come first: of those there is nothing left
 // to do.
 void ContactQuery::look_for_tie(const Entry& entry) {
-    if (may_all_tie_) {
-        may_all_tie_ = false;
+    if (crowd_.starts_with_all()) {
         Entry all = entry;
         all.a = pair_.a().tree().root();
         all.b = pair_.b().tree().root();
@@ -135,9 +130,8 @@ void ContactQuery::look_for_tie(const Entry& entry) {
 bool ContactQuery::waits_for(const Entry& candidate, const Entry& entry, std::size_t plane) {
     for (; plane < planes_.size(); ++plane) {
         if (are_sides(candidate, planes_[plane])) {
-            wait_ = Wait{candidate, entry, plane, {}, candidate.a.begin, candidate.b.begin, {}};
-            wait_->preparations[0].begin(pair_.a().tree(), candidate.a);
-            wait_->preparations[1].begin(pair_.b().tree(), candidate.b);
+            wait_ = Wait{{candidate, entry}, plane, candidate.a.begin, candidate.b.begin, {}};
+            wait_->nodes.begin(pair_.a().tree(), pair_.b().tree());
             return true;
         }
     }
@@ -147,7 +141,7 @@ bool ContactQuery::waits_for(const Entry& candidate, const Entry& entry, std::si
 // Goes on with vertices one by one, in slices: both nodes may hold whole meshes.
 bool ContactQuery::end_wait(SliceClock& clock) {
     Wait& wait = *wait_;
-    if (!wait.preparations[0].advance(clock) || !wait.preparations[1].advance(clock)) {
+    if (!wait.nodes.advance(clock)) {
         return false;
     }
     const ContactPlane& plane = planes_[wait.plane].plane;
@@ -163,21 +157,21 @@ bool ContactQuery::end_wait(SliceClock& clock) {
         return true;
     };
     bool holds = true;
-    for (; holds && wait.next_a < wait.candidate.a.end; ++wait.next_a) {
+    for (; holds && wait.next_a < wait.nodes.candidate.a.end; ++wait.next_a) {
         if (clock.is_over()) {
             return false;
         }
         holds = all_hold(pair_.a(), wait.next_a, wait.seen[0],
                          [&](const Vec3& p) { return plane.holds_a(p); });
     }
-    for (; holds && wait.next_b < wait.candidate.b.end; ++wait.next_b) {
+    for (; holds && wait.next_b < wait.nodes.candidate.b.end; ++wait.next_b) {
         if (clock.is_over()) {
             return false;
         }
         holds = all_hold(pair_.b(), wait.next_b, wait.seen[1],
                          [&](const Vec3& p) { return plane.holds_b(p); });
     }
-    const Entry candidate = wait.candidate, entry = wait.entry;
+    const Entry candidate = wait.nodes.candidate, entry = wait.nodes.pair;
     const std::size_t next = wait.plane + 1;
     wait_.reset();
     const bool is_pair = key_of(candidate.a, candidate.b) == key_of(entry.a, entry.b) &&
@@ -185,7 +179,7 @@ bool ContactQuery::end_wait(SliceClock& clock) {
     if (holds && !is_pair) {
         queue_.clear();
     } else if (!holds) {
-        tie_limit_ = (candidate.a.triangle_count() + candidate.b.triangle_count()) / kFewer;
+        crowd_.fail(candidate.a.triangle_count() + candidate.b.triangle_count());
         if (!waits_for(candidate, entry, next) && (is_pair || !waits_for(entry, entry, 0))) {
             part(entry);
         }
