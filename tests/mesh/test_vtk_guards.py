@@ -247,6 +247,37 @@ def test_faults_of_xml_files_are_told_with_their_line(old, new, fault):
         walk_xml(Source("x", "x", xml().replace(old, new, 1).encode()))
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        (
+            'WholeExtent="0 1 0 2 0 0"',
+            'WholeExtent="0 9 0 2 0 0"',
+            r"WholeExtent has 18 cells, and",
+        ),
+        ('WholeExtent="0 1 0 2 0 0"', "", r"has no WholeExtent of six whole numbers"),
+        (
+            'Extent="0 1 0 2 0 0"><',
+            f'Extent="0 {10**8} 0 2 0 0"><',
+            r"is a grid of 100000001 x 3 x 1",
+        ),
+        ('Spacing="1 1 1"', 'Spacing="1 nan 1"', r":2: Spacing is not 3 numbers"),
+        ('Origin="0 0 0"', 'Origin="0 0"', r":2: Origin is not 3 numbers"),
+    ],
+)
+def test_extents_of_grids_are_held_against_their_pieces(old, new, fault):
+    text = (
+        '<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">\n'
+        '<ImageData WholeExtent="0 1 0 2 0 0" Origin="0 0 0" Spacing="1 1 1">'
+        '<Piece Extent="0 1 0 2 0 0"></Piece></ImageData></VTKFile>\n'
+    )
+    assert walk_xml(Source("x", "x", text.encode()))[:4] == ("ImageData", 1, 6, 2)
+    assert old in text
+
+    with pytest.raises(MeshError, match=fault):
+        walk_xml(Source("x", "x", text.replace(old, new, 1).encode()))
+
+
 def test_packed_sizes_beyond_the_file_are_refused_before_they_are_taken():
     text = xml("", "binary packed")
     start = text.index(">", text.index('Name="Points"')) + 1

@@ -131,7 +131,11 @@ class _DolfinWalk:
                 raise self._source.error(fault, "write the file again", at=str(line))
             self.counts[place] += 1
         elif name in ("vertices", "cells"):
-            self.counts[f"claimed {name}"] = int(attributes.get("size", "0")[:18])
+            size = attributes.get("size", "")
+            if not (size.isascii() and size.isdigit()) or len(size) > 18:
+                fault = f"size of {name} is '{shown(size.encode())}', expected a whole number"
+                raise self._source.error(fault, _CUT, at=str(line))
+            self.counts[f"claimed {name}"] = int(size)
 
     def _end(self, name: str) -> None:
         self._path.pop()

@@ -63,7 +63,7 @@ _ELEMENTS = {
     28: _Element("line6", [*range(6)]),
 }
 _SECTION = re.compile(rb"^[ \t]*\$(?!End)(\w+)[ \t\r]*\n", re.MULTILINE)
-_HEADER = re.compile(rb"\s*(\d+)(?:\.(\d+))?[ \t]+([01])[ \t]+(\d+)[ \t\r]*\n")
+_HEADER = re.compile(rb"\s*(\d{1,4})(?:\.(\d{1,4}))?[ \t]+([01])[ \t]+(\d+)[ \t\r]*\n")
 _CUT = "it was cut short, or its counts are wrong"
 
 

@@ -221,6 +221,8 @@ class _BinaryReader:
             if keyword == _END:
                 return parts
             following = int(self._take("i8" if self._version >= 3 else "i4")[0])
+            if keyword == _VERSION:
+                keyword = "a second version"
             _refuse_unknown(self._source, keyword, f"byte {start}")
             if keyword == _DIMENSION:
                 self._dimension = int(self._take("i4")[0])

@@ -254,5 +254,7 @@ def _scaled(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     """Return vertices times a power of two that brings them below 1, and that power's inverse."""
     with np.errstate(invalid="ignore"):
         most = float(np.abs(np.where(np.isfinite(vertices), vertices, 0.0)).max(initial=0.0))
-    exponent = int(np.frexp(most)[1])
-    return np.ldexp(vertices, -exponent), float(np.ldexp(1.0, exponent))
+    # Powers of two stay within those of doubles, so that nothing overflows.
+    exponent = min(max(int(np.frexp(most)[1]), -1000), 1000)
+    with np.errstate(over="ignore", invalid="ignore"):  # of what is not finite
+        return np.ldexp(vertices, -exponent), float(np.ldexp(1.0, exponent))

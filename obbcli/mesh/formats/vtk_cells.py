@@ -160,13 +160,15 @@ def _block(source: Source, kind: int, rows: Ints, places: Ints) -> Block:
     count = rows.shape[1]
     if kind in (7, _STRIP, _QUADRATIC_POLYGON) and count < 3:
         raise source.error(f"has a polygon of {counted(count, 'corner')}", "export it again")
+    if (kind, count) not in ((_PIXEL, 4), (_VOXEL, 8)) and kind in (_PIXEL, _VOXEL):
+        return Block(f"{_title(kind)} with {count} nodes", rows, places)
     if kind == _STRIP:
         return _strips(rows, places)
     if kind == _PIXEL:
         return Block("quad", rows[:, _PIXEL_AS_QUAD], places)
     if kind == _VOXEL:
         return Block("hexahedron", rows[:, _VOXEL_AS_HEXAHEDRON], places)
-    if kind == _QUADRATIC_POLYGON:
+    if kind == _QUADRATIC_POLYGON and count % 2 == 0:
         around = np.arange(count).reshape(2, -1).T.ravel()
         return Block("polygon", rows[:, around], places)
     name = _NAMES.get(kind) or _ANY_ORDER.get((kind, count))

@@ -49,7 +49,8 @@ def grid_points(grid: Any) -> NDArray[np.float64]:
     else:
         firsts = grid.GetExtent()[::2]
         spaces = zip(firsts, sides, grid.GetSpacing(), strict=True)
-        ticks = [space * (first + np.arange(count)) for first, count, space in spaces]
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
+            ticks = [space * (first + np.arange(count)) for first, count, space in spaces]
     z, y, x = np.meshgrid(*ticks[::-1], indexing="ij")
     places = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     if hasattr(grid, "GetXCoordinates"):

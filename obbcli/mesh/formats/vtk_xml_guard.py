@@ -29,6 +29,7 @@ _OF_FACES = (
     *("polyhedron_to_faces", "polyhedron_offsets"),
 )
 _LARGEST_GRID = 1 << 24
+_FLOAT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
 
 
 class Xml(NamedTuple):
@@ -62,6 +63,8 @@ def walk_xml(source: Source) -> Xml:
         checked = _PieceCheck(source, walk, piece)
         points += checked.points()
         cells += checked.cells()
+    if walk.data_set in GRIDS:
+        _PieceCheck(source, walk, walk.whole).whole_grid(cells)
     return Xml(walk.data_set, len(walk.pieces), points, cells, walk.text())
 
 
@@ -96,6 +99,16 @@ class _PieceCheck:
             return prod(max(1, side - 1) for side in self._sides())
         names = ("Cells",) if self._walk.data_set == "UnstructuredGrid" else tuple(CELLS)[1:]
         return sum(self._cells_of(name) for name in names)
+
+    def whole_grid(self, cell_count: int) -> None:
+        """Hold what is said of a whole grid against the cells of its pieces."""
+        for name, count in (("Origin", 3), ("Spacing", 3), ("Direction", 9)):
+            words = self._piece.attributes.get(name, "0 " * count).split()
+            if len(words) != count or not all(map(_FLOAT.fullmatch, words)):
+                raise self._error(f"{name} is not {count} numbers")
+        whole = self.cells()
+        if whole != cell_count:
+            raise self._error(f"WholeExtent has {whole} cells, and its pieces {cell_count}")
 
     def _cells_of(self, section: str) -> int:
         count = self._count(CELLS[section])
@@ -164,9 +177,10 @@ class _PieceCheck:
 
     def _sides(self) -> list[int]:
         """Return how many points a grid has along each axis."""
-        words = self._piece.attributes.get("Extent", "").split()
+        name = "WholeExtent" if self._piece is self._walk.whole else "Extent"
+        words = self._piece.attributes.get(name, "").split()
         if len(words) != 6 or not all(re.fullmatch(r"-?\d{1,9}", word) for word in words):
-            raise self._error("has no Extent of six whole numbers")
+            raise self._error(f"has no {name} of six whole numbers")
         ends = list(map(int, words))
         sides = [1 + high - low for low, high in zip(ends[::2], ends[1::2], strict=True)]
         if min(sides) < 1 or prod(sides) > _LARGEST_GRID:

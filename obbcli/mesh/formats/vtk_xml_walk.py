@@ -60,6 +60,7 @@ class Walk:
     Attributes:
         data_set: its kind.
         coding: how it writes arrays.
+        whole: what the file says of all pieces.
         pieces: its pieces with their arrays.
         appended: where appended values begin, and whether they are base64; None for none.
     """
@@ -73,6 +74,7 @@ class Walk:
         self._parser = expat.ParserCreate()
         self.data_set = ""
         self.coding = Coding("<", "u4", "")
+        self.whole = Piece({}, 1, [])
         self.pieces: list[Piece] = []
         self.appended: tuple[int, bool] | None = None
 
@@ -94,6 +96,8 @@ class Walk:
             raise self._source.error(
                 f"is no whole XML: {words}", "it was cut short or damaged", at=str(fault.lineno)
             ) from fault
+        if not self.data_set:
+            raise self._source.error("has no element <VTKFile> with a type", CUT)
         if place >= 0 and self.appended is not None:
             start = self._data.find(b"_", tag_end) + 1
             if start == 0 or self._data[tag_end : start - 1].strip():
@@ -132,8 +136,10 @@ class Walk:
             self._letters.clear()
         elif name == "FieldData":
             self._fields.append((self._parser.CurrentByteIndex, 0))
-        elif parent == "VTKFile" and name != self.data_set:
-            raise self.error(f"holds <{name}>, but says that it is {self.data_set}", "", line)
+        elif parent == "VTKFile":
+            if name != self.data_set:
+                raise self.error(f"holds <{name}>, but says that it is {self.data_set}", "", line)
+            self.whole = Piece(attributes, line, [])
 
     def _end(self, name: str) -> None:
         self._path.pop()
