@@ -6,6 +6,7 @@ import contextlib
 
 import pytest
 
+from obbcli import load_parts
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
 
@@ -83,3 +84,18 @@ def test_an_index_names_files_at_or_below_its_folder_alone(old, new, fault, inde
 def test_an_index_from_a_stream_names_no_files():
     with pytest.raises(MeshError, match=r":3: names the file 'parts/a\.vtu'; name the index"):
         load_mesh_bytes(INDEX.encode(), ".vtm")
+
+
+def test_blocks_of_an_index_are_parts_by_the_names_above_them(index):
+    assembly = load_parts(index)
+
+    assert [part.path for part in assembly] == ["all/first", "all/2/0", "again"]
+    assert [len(part.mesh.triangles) for part in assembly] == [12, 3, 12]
+    assert assembly.parts[0].mesh is assembly.parts[2].mesh
+    assert len(load_mesh(f"{index}#all").triangles) == 15
+
+
+def test_other_files_are_one_part(index):
+    assembly = load_parts(index.parent / "parts" / "a.vtu")
+
+    assert [(part.path, len(part.mesh.triangles)) for part in assembly] == [("", 12)]

@@ -31,11 +31,16 @@ def read_vtk(source: Source) -> MeshArrays:
     """
     if not source.data.lstrip().startswith(b"<"):
         return _read_legacy(source)
-    if _BLOCKS.search(source.data):
+    if is_index(source):
         from obbcli.mesh.formats.vtk_blocks import read_blocks
 
-        return read_blocks(source, _read_xml)
-    return _read_xml(source)
+        return read_blocks(source, read_xml)
+    return read_xml(source)
+
+
+def is_index(source: Source) -> bool:
+    """Return whether a file is an index of blocks, which stand in other files."""
+    return _BLOCKS.search(source.data) is not None
 
 
 def _read_legacy(source: Source) -> MeshArrays:
@@ -50,7 +55,12 @@ def _read_legacy(source: Source) -> MeshArrays:
     return _surface_of(source, data_set)
 
 
-def _read_xml(source: Source) -> MeshArrays:
+def read_xml(source: Source) -> MeshArrays:
+    """Return points and triangles of one XML file that is no index.
+
+    Raises:
+        MeshError: as `read_vtk`.
+    """
     claimed = walk_xml(source)
     if not has_vtk():
         is_plain = claimed.data_set == "UnstructuredGrid" and claimed.piece_count == 1

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 from xml.parsers import expat
 
-import numpy as np
-
 from obbcli.mesh.formats.text import counted, shown
+from obbcli.mesh.parts.placed import joined
 from obbcli.mesh.source import Source
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from obbcli.mesh.source import MeshArrays
 
@@ -96,20 +95,30 @@ def read_blocks(source: Source, read: Callable[[Source], MeshArrays]) -> MeshArr
     Raises:
         MeshError: a file lies elsewhere, cannot be read or is refused; or no file is named.
     """
+    found = joined((arrays for _, arrays in blocks_of(source, read)), source)
+    source.note(f"{counted(len(block_files(source)), 'block')} taken as one surface")
+    return found
+
+
+def blocks_of(
+    source: Source, read: Callable[[Source], MeshArrays]
+) -> Iterator[tuple[BlockFile, MeshArrays]]:
+    """Yield the files that an index names with their points and triangles; each is read once.
+
+    Raises:
+        MeshError: as `read_blocks`.
+    """
     files = block_files(source)
     if not files:
         raise source.error("is an index that names no files", "a mesh is a surface of triangles")
-    points: list[np.ndarray] = []
-    triangles: list[np.ndarray] = []
+    read_before: dict[str, MeshArrays] = {}
     for block in files:
-        part = block_source(source, block)
-        vertices, rows = read(part)
-        triangles.append(rows + sum(map(len, points)))
-        points.append(vertices)
-        for note in part.notes:
-            source.note(f"{part.name}: {note}")
-    source.note(f"{counted(len(files), 'block')} taken as one surface")
-    return np.vstack(points), np.vstack(triangles)
+        if block.file not in read_before:
+            part = block_source(source, block)
+            read_before[block.file] = read(part)
+            for note in part.notes:
+                source.note(f"{part.name}: {note}")
+        yield block, read_before[block.file]
 
 
 def block_source(source: Source, block: BlockFile) -> Source:
