@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Cut = NDArray[np.int64]
 
 #: Polygons looked at in one piece, so that temporary arrays stay small.
-_SLICE = 1 << 15
+_SLICE = 1 << 13
 #: A turn to the wrong side below this share of the squared lengths beside it is rounding.
 _STRAIGHT = 1e-14
 #: Corners off their polygon's plane by less than this share of the largest coordinate are rounding.
@@ -143,32 +143,43 @@ class _Look(NamedTuple):
 
 
 def _look(rings: NDArray[np.float64]) -> _Look:
-    """Return what is known of polygons, (P, n, 3), by Newell's normals."""
+    """Return what is known of polygons, (P, n, 3), by Newell's normals.
+
+    Arrays inside are (3, n, P), so that each operation runs through polygons side by side.
+    """
+    corners = np.ascontiguousarray(rings.transpose(2, 1, 0))
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
-        arms = rings - rings[:, :1]
-        fan = np.cross(arms[:, 1:-1], arms[:, 2:])
+        arms = corners - corners[:, :1]
+        fan = _crossed(arms[:, 1:-1], arms[:, 2:])
         normals = fan.sum(axis=1)
-        lengths = np.linalg.norm(normals, axis=1)[:, np.newaxis]
+        lengths = np.sqrt(np.square(normals).sum(axis=0))
         units = normals / np.where(lengths > 0, lengths, 1.0)
-        sides = np.roll(rings, -1, axis=1) - rings
+        sides = np.roll(corners, -1, axis=1) - corners
         before = np.roll(sides, 1, axis=1)
-        turns = _along(np.cross(before, sides), units)
-        room = _STRAIGHT * (np.square(before).sum(axis=2) + np.square(sides).sum(axis=2))
-        is_convex = (turns >= -room).all(axis=1)
+        turns = _along(_crossed(before, sides), units)
+        squares = np.square(sides).sum(axis=0)
+        room = _STRAIGHT * (np.roll(squares, 1, axis=0) + squares)
+        is_convex = (turns >= -room).all(axis=0)
         # A star turns one way at all corners as well, but goes around more than once.
-        slack = _STRAIGHT * np.square(arms).sum(axis=2).max(axis=1, keepdims=True)
-        is_convex &= (_along(fan, units) >= -slack).all(axis=1)
+        slack = _STRAIGHT * np.square(arms).sum(axis=0).max(axis=0)
+        is_convex &= (_along(fan, units) >= -slack).all(axis=0)
         # Where the loops of a crossed outline cancel there is no normal, but there is area.
-        areas = np.linalg.norm(fan, axis=2).sum(axis=1, keepdims=True)
-        is_convex &= ((areas <= slack) | (lengths > _SAME_AREA * areas))[:, 0]
-        off = _along(rings - rings.mean(axis=1, keepdims=True), units)
-    is_convex |= ~np.isfinite(lengths[:, 0])
-    return _Look(normals, is_convex, np.nan_to_num(np.abs(off).max(axis=1)))
+        areas = np.sqrt(np.square(fan).sum(axis=0)).sum(axis=0)
+        is_convex &= (areas <= slack) | (lengths > _SAME_AREA * areas)
+        off = _along(corners - corners.mean(axis=1, keepdims=True), units)
+    is_convex |= ~np.isfinite(lengths)
+    return _Look(normals.T, is_convex, np.nan_to_num(np.abs(off).max(axis=0)))
+
+
+def _crossed(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the cross products of vectors whose coordinates come first."""
+    rows = [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+    return np.stack(rows)
 
 
 def _along(vectors: NDArray[np.float64], units: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how far each of (P, n, 3) goes along its polygon's normal, (P, n)."""
-    return np.asarray(np.einsum("pnk,pk->pn", vectors, units))
+    """Return how far each of (3, n, P) goes along its polygon's normal, (n, P)."""
+    return np.asarray((vectors * units[:, np.newaxis]).sum(axis=0))
 
 
 def _clipped(ring: NDArray[np.float64], normal: NDArray[np.float64]) -> tuple[Cut | None, bool]:
