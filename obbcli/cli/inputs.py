@@ -53,6 +53,18 @@ class Input(NamedTuple):
         return Source.of(self.name, digest, self.tree)
 
 
+class Lengths(NamedTuple):
+    """What becomes of a mesh's coordinates before anything is asked.
+
+    Attributes:
+        unit: that they are scaled to; None: of no matter.
+        scale: by which they are multiplied, whatever unit the file states; None: by none.
+    """
+
+    unit: str | None
+    scale: float | None
+
+
 def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
     """Refuse to write an output over an input.
 
@@ -68,7 +80,15 @@ def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
             raise UsageError(f"-o {output}", fault, "write to another file")
 
 
-def read_pair(a: str, b: str, *, verify: bool, hashed: bool, progress: bool) -> tuple[Input, Input]:
+def read_pair(
+    a: str,
+    b: str,
+    lengths: tuple[Lengths | None, Lengths | None] = (None, None),
+    *,
+    verify: bool,
+    hashed: bool,
+    progress: bool,
+) -> tuple[Input, Input]:
     """Return A and B as `read` does; one of them may be standard input.
 
     Raises:
@@ -76,17 +96,20 @@ def read_pair(a: str, b: str, *, verify: bool, hashed: bool, progress: bool) -> 
     """
     if a == b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    first = read(a, verify=verify, hashed=hashed, progress=progress)
-    if a == b:
+    first = read(a, lengths[0], verify=verify, hashed=hashed, progress=progress)
+    if a == b and lengths[0] == lengths[1]:
         return first, first
-    return first, read(b, verify=verify, hashed=hashed, progress=progress)
+    return first, read(b, lengths[1], verify=verify, hashed=hashed, progress=progress)
 
 
-def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
+def read(
+    name: str, lengths: Lengths | None = None, *, verify: bool, hashed: bool, progress: bool
+) -> Input:
     """Return a mesh or tree file with its tree, which is built over a mesh.
 
     Args:
         name: a path, or `-` for standard input.
+        lengths: what becomes of its coordinates.
         verify: whether a tree file's checksums are compared.
         hashed: whether the SHA-256 of what is read will be asked for.
         progress: whether a bar may be drawn.
@@ -102,6 +125,7 @@ def read(name: str, *, verify: bool, hashed: bool, progress: bool) -> Input:
     start = time.perf_counter()
     stamp = stamp_of(file_of(name))
     shape, sha256 = read_shape(name, verify=verify, hashed=hashed)
+    shape = measured(shape, lengths, name)
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
             shape = ObbTree.build(shape, progress=move)
@@ -142,6 +166,35 @@ def read_shape(
         return ObbTree.open(name, verify=verify), None
     mesh = load_mesh(name, hashed=hashed)
     return mesh, mesh.sha256
+
+
+def measured(shape: Mesh | ObbTree, lengths: Lengths | None, name: str) -> Mesh | ObbTree:
+    """Return a shape in the unit or by the scale that is asked for.
+
+    Raises:
+        MeshError: a tree file is of another unit or would be scaled, which its boxes do not allow;
+            or a coordinate leaves the range of double.
+    """
+    from obbcli.mesh import Mesh
+
+    if lengths is None:
+        return shape
+    unit, scale = lengths
+    if isinstance(shape, Mesh):
+        try:
+            if scale is not None:
+                return shape.scaled(scale, unit)
+            return shape if unit is None else shape.in_unit(unit)
+        except MeshError as fault:
+            raise MeshError(name, f"{fault.where}: {fault.fault}", fault.remedy) from fault
+    source = shape.source or "MESH"
+    if scale is not None:
+        remedy = f"build one: obbtree build {source} --scale {scale!r} -o FILE"
+        raise MeshError(name, "is a tree file, which is not scaled", remedy)
+    if unit is not None and shape.unit not in (None, unit):
+        remedy = f"build one: obbtree build {source} --unit {unit} -o FILE"
+        raise MeshError(name, f"is a tree in {shape.unit}, not {unit}", remedy)
+    return shape
 
 
 def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:

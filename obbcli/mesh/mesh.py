@@ -95,6 +95,46 @@ class Mesh:
         source = f", source={self.source!r}" if self.source else ""
         return f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles{source})"
 
+    def in_unit(self, unit: str) -> Mesh:
+        """Return the mesh in m, cm, mm, um, in or ft: scaled where its file states another unit.
+
+        A coordinate p becomes fl(p r) or fl(p / r) with r >= 1, the double nearest to the ratio of
+        the units. A mesh that states no unit is taken to be in this one.
+
+        Raises:
+            MeshError: the unit is not known, or a coordinate leaves the range of double.
+        """
+        from obbcli.mesh.units import checked_unit, converted
+
+        checked_unit(unit)
+        if self.unit is None or self.unit == unit:
+            return self._with(self.vertices, unit)
+        vertices, note = converted(self.vertices, self.unit, unit)
+        return self._with(vertices, unit, note)
+
+    def scaled(self, factor: float, unit: str | None = None) -> Mesh:
+        """Return the mesh with coordinates fl(p factor), in `unit`, whatever its file states.
+
+        Raises:
+            MeshError: the factor is no finite number above 0, the unit is not known, or a
+                coordinate leaves the range of double.
+        """
+        from obbcli.mesh.units import checked_unit, scaled
+
+        if unit is not None:
+            checked_unit(unit)
+        vertices, note = scaled(self.vertices, factor)
+        return self._with(vertices, unit, note)
+
+    def _with(
+        self, vertices: NDArray[np.float64], unit: str | None, note: str | None = None
+    ) -> Mesh:
+        """Return the mesh with other vertices, in a unit."""
+        vertices.setflags(write=False)
+        notes = self.notes if note is None else (*self.notes, note)
+        about = (self.source, self.sha256, notes)
+        return Mesh(vertices, self.triangles, *about, unit=unit, parts=self.parts)
+
     @cached_property
     def bounds(self) -> NDArray[np.float64]:
         """Return the lower and upper corner of the surface's axis-aligned box, (2, 3).

@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.accuracy import Accuracy
-from obbcli.errors import MotionError
+from obbcli.errors import MeshError, MotionError
 from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, as_body, pivot_of
 from obbcli.tree.tree import ObbTree, load_tree
@@ -70,6 +70,7 @@ class PairQuestion(NamedTuple):
         start = perf_counter()
         trees = trees_of(bodies)
         loaded = perf_counter() - start
+        check_units({"A": trees[0].unit, "B": trees[1].unit})
         resolved = _resolved(bodies[0]), _resolved(bodies[1])
         return cls(resolved, trees, end, _EXACT if accuracy is None else accuracy, loaded)
 
@@ -107,6 +108,23 @@ def _resolved(body: Body) -> Body:
     if steady is None or steady is body.motion:
         return body
     return Body(body.shape, body.pose, steady)
+
+
+def check_units(units: dict[str, str | None]) -> None:
+    """Refuse shapes that state different units of length.
+
+    Args:
+        units: what each shape states, by what errors call it.
+
+    Raises:
+        MeshError: two differ.
+    """
+    stated = [(name, unit) for name, unit in units.items() if unit is not None]
+    for name, unit in stated[1:]:
+        first, other = stated[0]
+        if unit != other:
+            fault = f"{first} is in {other}, {name} in {unit}"
+            raise MeshError("unit", fault, "bring both to one: --unit U, or Mesh.in_unit")
 
 
 def trees_of(bodies: tuple[Body, Body]) -> Trees:

@@ -40,6 +40,7 @@ class Source(NamedTuple):
         triangle_count: how many triangles it holds; None where it could not be read.
         notes: what of it was taken with a change, a sentence each.
         parts: those that a pattern selected, with their rows.
+        unit: the length of 1, as it was asked for or as the file states it.
     """
 
     path: str
@@ -47,6 +48,7 @@ class Source(NamedTuple):
     triangle_count: int | None
     notes: tuple[str, ...] = ()
     parts: tuple[PartRows, ...] = ()
+    unit: str | None = None
 
     @classmethod
     def of(cls, path: str, sha256: str | None, shape: Mesh | ObbTree | TreeHead) -> Source:
@@ -54,12 +56,14 @@ class Source(NamedTuple):
         from obbcli.mesh import Mesh
 
         count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
-        return cls(path, sha256, count, shape.notes, shape.parts)
+        return cls(path, sha256, count, shape.notes, shape.parts, shape.unit)
 
     def part(self) -> Record:
         """Return what a record says of it."""
         said = self._asdict() | {"notes": list(self.notes)}
-        del said["parts"]
+        del said["parts"], said["unit"]
+        if self.unit is not None:
+            said["unit"] = self.unit
         return said | ({"parts": [rows._asdict() for rows in self.parts]} if self.parts else {})
 
     def part_of(self, triangle: int | None) -> str | None:

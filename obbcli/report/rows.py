@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from obbcli.mesh.measure import diagonal
 from obbcli.report.record import note_rows
 from obbcli.report.table import count, length, seconds
 
 if TYPE_CHECKING:
-    from obbcli.report.record import Record
+    from collections.abc import Sequence
+
+    from obbcli.report.record import Record, Source
+    from obbcli.tree.tree import ObbTree
 
 
 def source_rows(record: Record) -> list[tuple[str, str]]:
@@ -26,6 +30,30 @@ def part_rows(result: Record) -> list[tuple[str, str]]:
     found = [(name, result.get(f"part_{name.lower()}")) for name in "AB"]
     words = [f"{path or 'no name'} of {name}" for name, path in found if path is not None]
     return [("parts", " and ".join(words))] if words else []
+
+
+#: Sizes that are further apart are more often a mistake of units than meant.
+_ODD_SIZES = 500.0
+
+
+def about_units(sources: Sequence[Source], trees: Sequence[ObbTree]) -> list[Source]:
+    """Return what is said of A and B, with notes on units that may be mistaken."""
+    a, b = trees
+    notes: tuple[list[str], list[str]] = ([], [])
+    if (a.unit is None) != (b.unit is None):
+        unit, place = a.unit or b.unit, 0 if a.unit is None else 1
+        other = "BA"[place]
+        notes[place].append(f"states no unit of length, {other} is in {unit}: see --unit, --scale")
+    sizes = [diagonal(tree.bounds) for tree in trees]
+    small, large = min(sizes), max(sizes)
+    if small > 0 and large / small > _ODD_SIZES:
+        place = sizes.index(large)
+        told = f"{large / small:,.0f} times the size of {'BA'[place]}"
+        notes[place].append(f"is {told}: is one of them in another unit? See --unit, --scale")
+    return [
+        source._replace(notes=(*source.notes, *more))
+        for source, more in zip(sources, notes, strict=True)
+    ]
 
 
 def why_open(record: Record) -> str:

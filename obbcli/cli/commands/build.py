@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from obbcli.cli.boundary import UsageError, as_error, report, writing
-from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
+from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
 from obbcli.cli.options.option import Command, common_options, gathered, option
+from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option
 from obbcli.cli.options.words import PathName, Whole, byte_count
 from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
@@ -39,6 +40,8 @@ class TreeOptions(NamedTuple):
     max_depth: int | None
     max_memory: int | None
     force: bool
+    unit: str | None
+    scale: float | None
 
     @property
     def build(self) -> BuildOptions:
@@ -97,6 +100,8 @@ build_options = gathered(
             help="Refuse a mesh whose build needs more bytes, such as 500M [default: no limit].",
         ),
         option(_TREE, "--force", is_flag=True, help="Replace tree files that exist."),
+        unit_option,
+        scale_option("--scale", "the mesh's"),
     ),
 )
 
@@ -181,7 +186,7 @@ def _build(name: str, target: Path, how: TreeOptions, common: CommonOptions) -> 
 
     require_free(target, force=how.force)
     start = time.perf_counter()
-    mesh = _mesh(name)
+    mesh = _mesh(name, how)
     loaded = time.perf_counter()
     with bar(f"building {name}", len(mesh.triangles), wanted=common.shows_progress) as move:
         options, limit = how.build._asdict(), how.max_memory
@@ -198,10 +203,12 @@ def _build(name: str, target: Path, how: TreeOptions, common: CommonOptions) -> 
     return Built(tree, str(target), size, seconds)
 
 
-def _mesh(name: str) -> Mesh:
+def _mesh(name: str, how: TreeOptions) -> Mesh:
     from obbcli.mesh import Mesh
 
     shape, _ = read_shape(name, verify=True)
     if not isinstance(shape, Mesh):
         raise MeshError(name, "is a tree file already", "build from the mesh it was made of")
-    return shape
+    made = measured(shape, UnitOptions(how.unit, how.scale, None).of_a(), name)
+    assert isinstance(made, Mesh)
+    return made

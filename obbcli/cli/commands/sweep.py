@@ -218,6 +218,7 @@ def _read(asked: TwoBodyOptions) -> tuple[Input, Input]:
     return read_pair(
         asked.a,
         asked.b,
+        (asked.units.of_a(), asked.units.of_b()),
         verify=not asked.no_verify,
         hashed=True,
         progress=asked.common.shows_progress,
@@ -237,6 +238,8 @@ def _header(
     options = {
         name: list(value) if isinstance(value, tuple) else value for name, value in given.items()
     }
+    # What is not asked for is no key, so that results written before these options came go on.
+    options |= {name: value for name, value in asked.units._asdict().items() if value is not None}
     accuracy = setting.accuracy.as_dict()
     return with_digest(header_record((source_a, source_b), about, options, accuracy))
 

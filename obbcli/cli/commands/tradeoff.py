@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, writing
-from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
+from obbcli.cli.inputs import STDIN, Lengths, keep_inputs, measured, read_shape
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import (
     Command,
@@ -23,8 +23,10 @@ from obbcli.cli.options.placement import (
     MotionOptions,
     PoseOptions,
     QuestionOptions,
+    UnitOptions,
     motion_options,
     pose_options,
+    unit_options,
 )
 from obbcli.cli.options.two_bodies import QUESTION, naming_options
 from obbcli.cli.options.words import Finite, PathName
@@ -58,6 +60,7 @@ class _TradeoffOptions(NamedTuple):
     a: str
     b: str
     wanted: _Wanted
+    units: UnitOptions
     pose: PoseOptions
     motion: MotionOptions
     accuracy: AccuracyOptions
@@ -130,6 +133,7 @@ Examples:
         click.argument("a", metavar="A", type=PathName()),
         click.argument("b", metavar="B", type=PathName()),
         _wanted_options,
+        unit_options,
         pose_options,
         motion_options,
         accuracy_options,
@@ -187,16 +191,19 @@ def _read(
 
     if asked.a == asked.b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    found: dict[str, tuple[Mesh | ObbTree, Source]] = {}
-    for name in (asked.a, asked.b):
-        if name in found:
+    found: dict[tuple[str, Lengths | None], tuple[Mesh | ObbTree, Source]] = {}
+    keys = (asked.a, asked.units.of_a()), (asked.b, asked.units.of_b())
+    for key in keys:
+        name, lengths = key
+        if key in found:
             continue
         stamp = stamp_of(file_of(name))
         shape, digest = read_shape(name, verify=not asked.no_verify)
+        shape = measured(shape, lengths, name)
         if digest is None and asked.common.json:
             digest = file_sha256(file_of(name), stamp)
-        found[name] = shape, Source.of(name, digest, shape)
-    (a, source_a), (b, source_b) = found[asked.a], found[asked.b]
+        found[key] = shape, Source.of(name, digest, shape)
+    (a, source_a), (b, source_b) = found[keys[0]], found[keys[1]]
     return (a, b), (source_a, source_b)
 
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+import click
+
 from obbcli.cli.boundary import UsageError, usage_errors
+from obbcli.cli.inputs import Lengths
 from obbcli.cli.options.option import gathered, option, vector
 from obbcli.cli.options.words import Finite
 
@@ -15,6 +18,7 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.accuracy import AccuracyOptions
+    from obbcli.cli.options.option import Decorator
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
     from obbcli.questions.pair_question import PairQuestion
@@ -55,6 +59,51 @@ pose_options = gathered(
         vector(_POSE, "--rotate-b", "Turn B about the origin first: axis times angle, in rad."),
         option(_POSE, "--degrees", is_flag=True, help="Angles are in degrees, spins in degrees/s."),
     ),
+)
+
+
+class UnitOptions(NamedTuple):
+    """In which unit of length A and B are taken, and by what they are scaled."""
+
+    unit: str | None
+    scale: float | None
+    scale_b: float | None
+
+    def of_a(self) -> Lengths | None:
+        """Return what becomes of A's coordinates; None where they are taken as they are."""
+        return self._lengths(self.scale, "--scale")
+
+    def of_b(self) -> Lengths | None:
+        """Return the same of B."""
+        return self._lengths(self.scale_b, "--scale-b")
+
+    def _lengths(self, scale: float | None, name: str) -> Lengths | None:
+        if scale is not None and not scale > 0:
+            raise UsageError(name, f"is {scale!r}", "use a number above 0")
+        return None if self.unit is None and scale is None else Lengths(self.unit, scale)
+
+
+_UNITS = "Units"
+UNIT_WORDS = ("m", "cm", "mm", "um", "in", "ft")
+unit_option = option(
+    _UNITS,
+    "--unit",
+    type=click.Choice(UNIT_WORDS),
+    help="Scale meshes that state another unit to this one; others are taken to be in it "
+    "[default: scale nothing].",
+)
+
+
+def scale_option(name: str, what: str) -> Decorator:
+    """Return an option that scales A, B or what is built."""
+    text = f"Multiply {what} coordinates by F, to be in mesh units [default: leave them]."
+    return option(_UNITS, name, type=Finite(), metavar="F", help=text)
+
+
+unit_options = gathered(
+    "units",
+    UnitOptions,
+    (unit_option, scale_option("--scale", "A's"), scale_option("--scale-b", "B's")),
 )
 
 

@@ -22,8 +22,10 @@ from obbcli.cli.options.placement import (
     MotionOptions,
     PoseOptions,
     QuestionOptions,
+    UnitOptions,
     motion_options,
     pose_options,
+    unit_options,
 )
 from obbcli.cli.options.words import PathName
 from obbcli.cli.progress import proving
@@ -50,6 +52,7 @@ class TwoBodyOptions(NamedTuple):
     a: str
     b: str
     exit_code: bool
+    units: UnitOptions
     pose: PoseOptions
     motion: MotionOptions
     accuracy: AccuracyOptions
@@ -75,6 +78,7 @@ class TwoBodyOptions(NamedTuple):
         return read_pair(
             self.a,
             self.b,
+            (self.units.of_a(), self.units.of_b()),
             verify=not self.no_verify,
             hashed=self.common.json,
             progress=self.common.shows_progress,
@@ -85,10 +89,13 @@ class TwoBodyOptions(NamedTuple):
     ) -> Setting:
         """Return what a record says of the question."""
         from obbcli.report.record import Setting, motion_part
+        from obbcli.report.rows import about_units
 
         # Hashes and centroids cost time, and only a document shows them.
         is_shown = self.common.json
         sources = [file.source(with_sha256=is_shown) for file in files]
+        if not self.common.quiet:
+            sources = about_units(sources, pair.trees)
         motion = motion_part(pair.bodies, pair.duration) if is_shown else {}
         return Setting(sources, motion, pair.accuracy, solid)
 
@@ -121,6 +128,7 @@ def about_two(
                 callback=lambda _context, _param, name: name or "",
             ),
             option(QUESTION, "--exit-code", is_flag=True, help=exit_code),
+            unit_options,
             pose_options,
             motion_options,
             accuracy_options,

@@ -97,9 +97,10 @@ DEFINITIONS: dict[str, Schema] = {
             "sha256": told(or_null(SHA256), "of the file's bytes; null where they were not read"),
             "triangle_count": told(or_null(COUNT), "null where there is none to count"),
             "notes": told(list_of(TEXT), "what of it was taken with a change, a sentence each"),
+            "unit": told(TEXT, "the length of 1; left out where neither file nor options state it"),
             "parts": told(list_of(_PART_ROWS), "those that FILE#PATTERN selected; else left out"),
         },
-        optional=("notes", "parts"),  # documents written before notes came have none
+        optional=("notes", "unit", "parts"),  # documents written before notes came have none
         description="A file that was asked about.",
     ),
     "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),
