@@ -62,6 +62,9 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
         >>> load_mesh("sample_meshes/gear.stl")
         Mesh(34560 vertices, 11520 triangles, source='gear.stl')
     """
+    measure: Callable[[Mesh], Mesh] | None = getattr(path, "measure", None)  # of `MeasuredFile`
+    if measure is not None:
+        return measure(load_mesh(os.fspath(path), hashed=hashed))
     name, pattern = file_and_pattern(os.fspath(path))
     if pattern is not None:
         return load_selection(name, pattern, hashed=hashed)

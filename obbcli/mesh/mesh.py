@@ -112,6 +112,16 @@ class Mesh:
         vertices, note = converted(self.vertices, self.unit, unit)
         return self._with(vertices, unit, note)
 
+    def stated(self, unit: str | None) -> Mesh:
+        """Return the mesh with the same coordinates, taken to be in another unit.
+
+        Raises:
+            MeshError: the unit is not known.
+        """
+        from obbcli.mesh.units import checked_unit
+
+        return self._with(self.vertices, None if unit is None else checked_unit(unit))
+
     def scaled(self, factor: float, unit: str | None = None) -> Mesh:
         """Return the mesh with coordinates fl(p factor), in `unit`, whatever its file states.
 

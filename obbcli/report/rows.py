@@ -56,6 +56,19 @@ def about_units(sources: Sequence[Source], trees: Sequence[ObbTree]) -> list[Sou
     ]
 
 
+def told_units(meshes: Sequence[Source]) -> list[Source]:
+    """Return what is said of a scene's files, with a note where some alone state a unit."""
+    found = list(meshes)
+    silent = sum(mesh.unit is None for mesh in found)
+    if 0 < silent < len(found):
+        place = next(k for k, mesh in enumerate(found) if mesh.unit is not None)
+        mesh = found[place]
+        others = "1 other file states" if silent == 1 else f"{silent:,} other files state"
+        note = f"is in {mesh.unit}, {others} no unit of length: see unit and scale of scenes"
+        found[place] = mesh._replace(notes=(*mesh.notes, note))
+    return found
+
+
 def why_open(record: Record) -> str:
     """Return what an unresolved question may have ended at: a limit, or the end of its digits."""
     accuracy, stats = record["accuracy"], record["stats"]

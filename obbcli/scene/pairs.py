@@ -6,6 +6,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from obbcli.questions.pair_question import check_units
 from obbcli.scene.candidates import Ignored, asked_pairs, find_candidates
 from obbcli.scene.results import SceneContact, SceneStats
 
@@ -61,6 +62,7 @@ class ScenePairs:
         self.bodies = bodies = [scene.bodies[place] for place in places]
         with self.timed("load"):
             self.shapes = loaded = [shapes.load(body.body.shape) for body in bodies]
+        check_units({body.name: shape.unit for body, shape in zip(bodies, loaded, strict=True)})
         with self.timed("bounds"):
             found = find_candidates(bodies, loaded, places, ignored, self.duration, scene.accuracy)
         self.candidates = found if wanted is None else _only(found, wanted)

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import ObbError, SceneError
+from obbcli.mesh.measured_file import MeasuredFile
+from obbcli.mesh.units import checked_unit
 from obbcli.motion.body import Body
 from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
@@ -31,8 +33,8 @@ T = TypeVar("T")
 # Some 300,000 bodies. To find out that something longer is no scene would take minutes.
 _MOST_BYTES = 64 << 20
 _LONG_NUMBER = "a number has too many digits"
-_KEYS = ("duration", "accuracy", "body", "ignore")
-_BODY_KEYS = ("name", "mesh", "pose", "motion", "static", "group")
+_KEYS = ("duration", "accuracy", "unit", "body", "ignore")
+_BODY_KEYS = ("name", "mesh", "unit", "scale", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
 _PATH_KEYS = ("times", "poses")
 _ACCURACY_KEYS = tuple(Accuracy().as_dict())
@@ -158,9 +160,11 @@ class _Reader:
     def __init__(self, place: str, folder: Path) -> None:
         self._place = place
         self._folder = folder
+        self._unit: str | None = None
 
     def scene(self, tree: dict[str, Any]) -> SceneParts:
         known_keys(tree, _KEYS, self._place)
+        self._unit = self._named("", checked_unit, tree["unit"]) if "unit" in tree else None
         bodies = self._bodies(self._tables(tree, "body"))
         ignore = self._tables(tree, "ignore")
         accuracy = tree.get("accuracy", {})
@@ -197,10 +201,29 @@ class _Reader:
             raise SceneError(self._at(f"{key}.mesh"), fault, "scenes do not hold scenes")
         pose = self._pose(table.get("pose", {}), f"{key}.pose")
         motion = self._motion(table.get("motion", {}), f"{key}.motion")
-        body = self._named(f"{key}.", Body, mesh, pose, motion)
+        shape = self._measured(str(mesh), table, key)
+        body = self._named(f"{key}.", Body, shape, pose, motion)
         return self._named(
             "", SceneBody, name, body, table.get("static", False), table.get("group")
         )
+
+    def _measured(self, mesh: str, table: dict[str, Any], key: str) -> MeasuredFile | str:
+        """Return a body's file, and the unit and scale that it is taken in."""
+        own = table.get("unit")
+        if "unit" in table:
+            self._named(f"{key}.", checked_unit, own)
+        scale = table.get("scale")
+        if "scale" in table:
+            where = self._at(f"{key}.scale")
+            scale = self._number(scale, where, least=0)
+            if scale == 0:
+                raise SceneError(where, "is 0", "use a number above 0")
+            if own is not None:
+                fault = "has unit and scale, of which the second takes the place of the first"
+                raise SceneError(self._at(key), fault, "keep one")
+        if self._unit is None and own is None and scale is None:
+            return mesh
+        return MeasuredFile(mesh, self._unit, own, scale)
 
     def _pose(self, table: Any, key: str) -> Pose:
         self._table(table, ("rotation", "translation"), self._at(key))

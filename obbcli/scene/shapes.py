@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from obbcli.files import file_and_pattern
 from obbcli.mesh import Mesh, load_mesh
+from obbcli.mesh.measured_file import MeasuredFile
 from obbcli.motion.assembly import LazyMesh
 from obbcli.motion.body import Body, with_pivot
 from obbcli.scene.results import BodyStats
 from obbcli.tree.head import TreeHead
-from obbcli.tree.tree import ObbTree, begins_as_tree
+from obbcli.tree.tree import ObbTree, begins_as_tree, check_measures
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -50,7 +51,8 @@ class Shapes:
         if found is None:
             assert isinstance(shape, (str, os.PathLike))
             if begins_as_tree(Path(shape)):
-                found = TreeHead(shape, verify=self._verify)
+                found = TreeHead(os.fspath(shape), verify=self._verify)
+                check_measures(shape, found.unit)
             else:
                 found = load_mesh(shape, hashed=False)
             self._loaded[key] = found
@@ -98,4 +100,5 @@ def _key(shape: Shape) -> Hashable:
     if not isinstance(shape, (str, os.PathLike)):
         return id(shape)
     file, pattern = file_and_pattern(os.fspath(shape))
-    return os.path.realpath(file), pattern
+    measures = (shape.unit, shape.own, shape.scale) if isinstance(shape, MeasuredFile) else None
+    return os.path.realpath(file), pattern, measures

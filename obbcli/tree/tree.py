@@ -169,9 +169,26 @@ def load_tree(path: str | os.PathLike[str], *, verify: bool = True) -> ObbTree:
         OSError: the file cannot be read.
     """
     if begins_as_tree(Path(path)):
-        return ObbTree.open(path, verify=verify)
+        tree = ObbTree.open(path, verify=verify)
+        check_measures(path, tree.unit)
+        return tree
     # No answer shows the tree of a single question, so its mesh is not hashed.
     return ObbTree.build(load_mesh(path, hashed=False))
+
+
+def check_measures(path: object, unit: str | None) -> None:
+    """Refuse a tree file whose path says that it is scaled, as scenes write them.
+
+    Args:
+        path: of the file, a `MeasuredFile` where it says so.
+        unit: that the tree is in.
+
+    Raises:
+        MeshError: its boxes do not allow it.
+    """
+    check = getattr(path, "check_tree", None)
+    if check is not None:
+        check(unit)
 
 
 def begins_as_tree(path: Path) -> bool:

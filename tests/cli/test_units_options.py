@@ -120,3 +120,27 @@ def test_scales_and_units_that_are_none_are_usage_errors(files, obbtree):
     assert obbtree("build", "one.obj", "--scale", 0).code in (2, 3)
     ended = obbtree("collide", "one.obj", "far.obj", "--scale", "1e308")
     assert ended.code in (0, 3)
+
+
+def test_scene_tells_files_without_a_unit_beside_others(files, obbtree):
+    text = "".join(f'[[body]]\nname = "{name}"\nmesh = "{name}"\n' for name in ("m.glb", "one.obj"))
+    (files / "s.toml").write_text(text)
+    (files / "t.toml").write_text('unit = "m"\n' + text)
+
+    plain = obbtree("scene", "s.toml", "--json").json["inputs"]["meshes"]
+    told = obbtree("scene", "t.toml", "--json").json["inputs"]["meshes"]
+
+    assert [mesh["notes"] for mesh in plain] == [
+        ["is in m, 1 other file states no unit of length: see unit and scale of scenes"],
+        [],
+    ]
+    assert [(mesh["notes"], mesh["unit"]) for mesh in told] == [([], "m"), ([], "m")]
+
+
+def test_scene_tells_every_scale_of_a_file(files, obbtree):
+    bodies = [f'[[body]]\nname = "{k}"\nmesh = "one.obj"\nscale = {k}\n' for k in (2, 3)]
+    (files / "s.toml").write_text("".join(bodies))
+
+    (mesh,) = obbtree("scene", "s.toml", "--json").json["inputs"]["meshes"]
+
+    assert mesh["notes"] == ["coordinates times 2.0", "coordinates times 3.0"]

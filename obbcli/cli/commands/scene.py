@@ -19,11 +19,14 @@ from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
     from obbcli.cli.options.option import CommonOptions
+    from obbcli.mesh import Mesh
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene
     from obbcli.scene.contact_stream import ContactStream
     from obbcli.scene.results import SceneContact
+    from obbcli.tree.head import TreeHead
+    from obbcli.tree.tree import ObbTree
 
     Stamps: TypeAlias = dict[str, tuple[int, ...] | None]
 
@@ -226,17 +229,23 @@ def _record(
     """
     from obbcli.files import file_of
     from obbcli.report.record import Source, file_sha256
+    from obbcli.report.rows import told_units
     from obbcli.report.scene import mesh_paths, scene_record
 
     asked = found.asked
     shapes = zip(asked.bodies, asked.shapes, strict=True)
-    made = {str(body.body.shape): shape for body, shape in shapes}
+    made: dict[str, list[Mesh | ObbTree | TreeHead]] = {}
+    for body, shape in shapes:
+        made.setdefault(str(body.body.shape), []).append(shape)
     meshes = []
     for path in mesh_paths(asked):
         digest = None if stamps is None else file_sha256(file_of(path), stamps[path])
-        meshes.append(Source.of(path, digest, made[path]))
+        # A file may be taken in several units.
+        notes = dict.fromkeys(note for shape in made[path] for note in shape.notes)
+        meshes.append(Source.of(path, digest, made[path][0])._replace(notes=tuple(notes)))
     if not meshes:  # the parts of the scene's own file
         meshes = [_file_of_parts(source, scene, found)]
+    meshes = told_units(meshes)
     is_hashed = stamps is not None
     record = scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
     record["stats"] |= _decoded(scene)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from obbcli.mesh import Mesh, load_mesh
 from obbcli.motion.body import Body
-from obbcli.tree.tree import ObbTree, begins_as_tree
+from obbcli.tree.tree import ObbTree, begins_as_tree, check_measures
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,8 +109,12 @@ def _shape(shape: Shape) -> Mesh | ObbTree:
     decoded = getattr(shape, "mesh", None)  # that of a part
     if isinstance(decoded, Mesh):
         return decoded
-    path = Path(shape)  # type: ignore[arg-type]  # a Body holds nothing else
-    return ObbTree.open(path) if begins_as_tree(path) else load_mesh(path)
+    assert isinstance(shape, (str, os.PathLike))  # a Body holds nothing else
+    if not begins_as_tree(Path(shape)):
+        return load_mesh(shape)
+    tree = ObbTree.open(os.fspath(shape))
+    check_measures(shape, tree.unit)
+    return tree
 
 
 def _tree(shape: Mesh | ObbTree, build: BuildOptions, look: Callable[[float], object]) -> ObbTree:
