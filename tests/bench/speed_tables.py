@@ -33,9 +33,27 @@ _MOST_ROWS = 20
 FIGURES = re.compile(
     r"(?P<begin><!-- figures: (?P<name>[\w-]+) -->\n).*?(?P<end><!-- end of figures -->)", re.DOTALL
 )
+
+
+def boxes_of_fits(rows: Sequence[Row]) -> str:
+    """Return the columns of the table of fits that count boxes, with volume and time of builds."""
+    lines = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in bench_fits.tables(rows).splitlines()
+    ]
+    kept = [
+        column
+        for column, name in enumerate(lines[0])
+        if column == 0 or name.endswith("boxes") or name in ("volume", "build")
+    ]
+    return markdown([[line[column] for column in kept] for line in (lines[0], *lines[2:])])
+
+
+# What a page has no room for is printed by the bench alone.
+LEFT_OUT = {"root boxes"}
 TABLES = {
     "first contact": moving_tables.short,
-    "fits": bench_fits.tables,
+    "fits": boxes_of_fits,
     "hostile": bench_hostile.tables,
 }
 
@@ -82,7 +100,7 @@ def told(machine: Mapping[str, Any], bench: Mapping[str, Any]) -> str:
     when = f"Measured {bench['measured']} on {place} at a load of {bench['load']:g}"
     rows = rows_of(bench)
     tables = []
-    for name in dict.fromkeys(row.bench for row in rows):
+    for name in dict.fromkeys(row.bench for row in rows if row.bench not in LEFT_OUT):
         some = [row for row in rows if row.bench == name]
         tables.append(f"**{name}**\n\n{TABLES.get(name, medians)(some)}")
     return f"{when}: `{bench['command']}`.\n\n" + "\n\n".join(tables)
