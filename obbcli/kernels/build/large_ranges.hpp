@@ -22,7 +22,7 @@ namespace obb {
 // A workshop for ranges of more than SmallRanges::kMost triangles. Each has a frame: an origin and
 // a power of two that bring it into [-1, 1], where floats hold its corners to 2^-25. That decides
 // how it is oriented and parted; boxes hold the corners themselves, proven. What is done to a range
-// is a function of its node, its frame and the ids of its triangles, whoever does it and when.
+// is a function of its node, its frame and the ids of its triangles, on any thread at any time.
 class LargeRanges {
   public:
     // What it takes: coordinates and ids twice, keys once.

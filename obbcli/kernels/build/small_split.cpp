@@ -7,9 +7,9 @@
 
 namespace obb {
 
-// Marks who goes left, and returns how many do. The center rule may put all centroids on one side;
-// the next longest axes are tried then, and at last the median of the longest axis, which always
-// parts them. So it does where the compact rule finds all centroids together.
+// Marks the triangles that go left, and returns how many do. The center rule may put all centroids
+// on one side; the next longest axes are tried then, and at last the median of the longest axis,
+// which always parts them. So it does where the compact rule finds all centroids together.
 std::uint32_t SmallRanges::part(const Block& block, const Node& node) {
     const std::uint32_t count = block.ref.triangle_count();
     if (count == 2) { // one on each side, whichever
@@ -39,7 +39,7 @@ std::uint32_t SmallRanges::part(const Block& block, const Node& node) {
     return count / 2;
 }
 
-// Marks nobody where it finds all centroids together.
+// Marks no triangle where all centroids are together.
 std::uint32_t SmallRanges::part_compactly(const Block& block, const Node& node) {
     const std::uint32_t count = block.ref.triangle_count();
     const auto cut = compact_.best({axes_of(node.rotation), node.center, half_extents_of(node)},

@@ -73,7 +73,7 @@ TreeView TreeBuilder::view() const {
 }
 
 // Whoever loses the race for the lock finds the node ready. The flag is written last: from then on
-// nobody touches the range but to read it, or to split the children's parts of it.
+// the range is only read, or the children's parts of it are split.
 void TreeBuilder::prepare(const NodeRef& ref) {
     const std::lock_guard lock(locks_[ref.slot % kLockCount]);
     if (on_demand_.is_ready(ref.slot)) {
@@ -88,7 +88,7 @@ void TreeBuilder::prepare(const NodeRef& ref) {
     work_done_ += ref.triangle_count();
     __atomic_store_n(&ready_[ref.slot], std::uint8_t{1}, __ATOMIC_RELEASE);
     if (--unsplit_count_ == 0) {
-        large_.reset(); // of use to nobody any more
+        large_.reset(); // no node needs it any more
     }
 }
 

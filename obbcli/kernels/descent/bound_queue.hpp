@@ -11,7 +11,7 @@ namespace obb {
 
 // The heap moves keys alone: entries stay where they were put.
 template <typename Entry>
-class TimeQueue {
+class BoundQueue {
   public:
     [[nodiscard]] bool is_empty() const { return keys_.empty(); }
     // Infinite where nothing is left.

@@ -17,9 +17,9 @@ struct BoxLimits {
     friend bool operator==(const BoxLimits&, const BoxLimits&) = default;
 };
 
-// What `Accuracy` of accuracy.py asks of a certified question, but for the width of a bracket in
-// time, which depends on the motion. A query takes of it what concerns it; the last two bind those
-// who advance a query.
+// How accurate a certified answer has to be and how long it may take, but for the width of a
+// bracket in time, which depends on the motion. A query takes of it what concerns it; the last two
+// bind those who advance a query.
 struct Limits {
     BoxLimits boxes;
     // Points this close may end a search, mesh units; negative: only proof does.
@@ -31,7 +31,7 @@ struct Limits {
     double seconds = std::numeric_limits<double>::infinity();
 };
 
-// What a query cost so far, in the order of `Counts` in counts.py.
+// What a query cost so far. Python reads the counts in this order.
 struct WalkCounts {
     std::uint64_t box_tests = 0;
     std::uint64_t triangle_tests = 0;

@@ -5,7 +5,7 @@
 namespace obb {
 namespace {
 
-[[nodiscard]] Four reach(const Vector3<Four>& v) {
+[[nodiscard]] Four largest_coordinate(const Vector3<Four>& v) {
     return maximum(maximum(absolute(v.x), absolute(v.y)), absolute(v.z));
 }
 
@@ -23,7 +23,7 @@ namespace {
     const Four factor = (kTripleError / 4) * (4.0 * sizes + 0x1p-960);
     for (std::size_t k = 0; k < 3; ++k) {
         const Vector3<Four> w = other[k] - plane[0];
-        const Four error = factor * reach(w) + 0x1p-1000;
+        const Four error = factor * largest_coordinate(w) + 0x1p-1000;
         const Four value = dot(normal, w);
         sides.above[k] = value > error;
         sides.below[k] = value < -error;

@@ -117,7 +117,7 @@ bool DistanceQuery::is_open(const Node& node, const NodeRef& ref, std::uint32_t 
     return ref.depth < max_depth && !(boxes_.boxes_for_leaves && TreeView::is_leaf(node));
 }
 
-DistanceQuery::Side DistanceQuery::reach(const PosedTree& body, const NodeRef& ref) const {
+DistanceQuery::Side DistanceQuery::side_of(const PosedTree& body, const NodeRef& ref) const {
     Side side;
     side.ref = ref;
     if (ref.is_triangle()) {
@@ -184,7 +184,7 @@ void DistanceQuery::open_leaf(const Pair& pair, bool opens_a) {
     const PosedTree& body = opens_a ? a_ : b_;
     const NodeRef& ref = opens_a ? pair.a : pair.b;
     body.tree().prepare(ref);
-    const Side other = reach(opens_a ? b_ : a_, opens_a ? pair.b : pair.a);
+    const Side other = side_of(opens_a ? b_ : a_, opens_a ? pair.b : pair.a);
     const std::uint32_t begin = ref.begin + pair.next;
     const std::uint32_t end = begin + std::min(kTrianglesAPop, ref.end - begin);
     if (end < ref.end) {
@@ -194,16 +194,16 @@ void DistanceQuery::open_leaf(const Pair& pair, bool opens_a) {
     }
     for (std::uint32_t i = begin; i < end; ++i) {
         const NodeRef child = TreeView::triangle_ref(ref, i);
-        const double key = std::max(pair.key, bound(reach(body, child), other));
+        const double key = std::max(pair.key, bound(side_of(body, child), other));
         add(opens_a ? Pair{key, child, pair.b, {}} : Pair{key, pair.a, child, {}});
     }
 }
 
 void DistanceQuery::add_one_by_one(const Pair& pair, const Part& a, const Part& b) {
     for (std::uint32_t i = 0; i < a.count; ++i) {
-        const Side side_a = reach(a_, a.refs[i]);
+        const Side side_a = side_of(a_, a.refs[i]);
         for (std::uint32_t j = 0; j < b.count; ++j) {
-            const double key = bound(side_a, reach(b_, b.refs[j]));
+            const double key = bound(side_a, side_of(b_, b.refs[j]));
             add({std::max(pair.key, key), a.refs[i], b.refs[j], {}});
         }
     }

@@ -100,7 +100,7 @@ class DistanceQuery {
     enum class Next : std::uint8_t { kOpenA, kOpenB, kOpenBoth, kMeasure, kClose };
     [[nodiscard]] Next next(const Pair& pair) const;
     [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
-    [[nodiscard]] Side reach(const PosedTree& body, const NodeRef& ref) const;
+    [[nodiscard]] Side side_of(const PosedTree& body, const NodeRef& ref) const;
     [[nodiscard]] double bound(const Side& a, const Side& b);
     [[nodiscard]] double high_in_unit(double length, int exponent) const;
     [[nodiscard]] double low_in_unit(double length, int exponent) const;
@@ -133,11 +133,11 @@ class DistanceQuery {
     int exponent_ = 0;
     double unit_ = 0; // 2^-exponent_; 0 where products with it may underflow
     std::array<double, 2> unit_factors_{1, 1}; // of which the product is 2^-exponent_
-    // On the heap: vectors this wide want more alignment than those who hold queries give.
+    // On the heap: vectors this wide want more alignment than the objects that hold queries have.
     std::unique_ptr<LaneFrame> lanes_ = std::make_unique<LaneFrame>();
     double tolerance_ = 0;
     std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
-    TimeQueue<Pair> queue_;                 // by their keys
+    BoundQueue<Pair> queue_;                // by their keys
     std::vector<Pair> stack_;               // small pairs, done before the queue goes on
     double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points

@@ -72,7 +72,7 @@ bool DistanceQuery::are_sides_apart(const Pair& pair) {
 void DistanceQuery::look_for_tie(const Pair& pair) {
     if (crowds_[has_many_ties() ? 1 : 0].starts_with_all()) {
         Pair all{0.0, a_.tree().root(), b_.tree().root(), {}};
-        all.key = bound(reach(a_, all.a), reach(b_, all.b));
+        all.key = bound(side_of(a_, all.a), side_of(b_, all.b));
         if (may_tie(all) && are_sides_apart(all)) {
             wait_for(all, pair);
             return;
@@ -155,7 +155,7 @@ double DistanceQuery::all_apart(const Pair& pair) const {
         const PosedTree& body = is_a ? a_ : b_;
         const NodeRef& ref = is_a ? pair.a : pair.b;
         Summit& summit = summits[is_a ? 0 : 1];
-        SeenLately seen;
+        RecentVertices seen;
         for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
             const Triangle t = in_unit(body.triangle(TreeView::triangle_ref(ref, i)));
             const Corners& corners = body.tree().corners[i];

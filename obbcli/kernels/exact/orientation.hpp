@@ -27,7 +27,7 @@ enum class Sign : std::int8_t { kUnsure, kNegative, kPositive };
     const Vec3 u = b - a;
     const Vec3 v = c - a;
     const Vec3 w = d - a;
-    const double error = triple_error(norm_1(u) * norm_1(v), reach(w));
+    const double error = triple_error(norm_1(u) * norm_1(v), largest_coordinate(w));
     const double value = dot(cross(u, v), w);
     return value > error ? Sign::kPositive : value < -error ? Sign::kNegative : Sign::kUnsure;
 }

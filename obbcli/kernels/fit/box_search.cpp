@@ -48,10 +48,10 @@ void each_frame_across(Vec3 e0, Vec3 e1, Vec3 e2, Take&& take) {
         if (!(norm(n) > 0)) {
             continue;
         }
-        const Vec3 first = normalized(n);
+        const Vec3 first = unit_of(n);
         const Vec3 across = cross(first, e1);
         if (norm(across) > 0x1p-20) {
-            const Vec3 second = normalized(across);
+            const Vec3 second = unit_of(across);
             take(Axes{first, second, cross(first, second)});
         }
     }

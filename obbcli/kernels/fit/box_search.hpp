@@ -13,7 +13,8 @@ using Axes = std::array<Vec3, 3>;
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-[[nodiscard]] inline Vec3 normalized(Vec3 v) { return (1.0 / norm(v)) * v; }
+// The direction of a vector that is neither zero nor beyond the range of squares.
+[[nodiscard]] inline Vec3 unit_of(Vec3 v) { return (1.0 / norm(v)) * v; }
 
 // A box that is flat but for rounding has no volume to speak of: then its area decides.
 [[nodiscard]] inline double padded_volume(double a, double b, double c) {
@@ -55,7 +56,7 @@ struct FoundBox {
     if (r.x == 0 && r.y == 0) {
         return {};
     }
-    const Vec3 u = normalized(r.x * frame.u + r.y * frame.v);
+    const Vec3 u = unit_of(r.x * frame.u + r.y * frame.v);
     return {padded_volume(high - low, r.length, r.width), {u, cross(n, u), n}};
 }
 

@@ -82,7 +82,7 @@ void try_edge_pairs(HullBody& body, Shortlist& shortlist) {
         for (std::size_t k = i + 1; k < body.edges.size(); ++k) {
             const BodyEdge &e = body.edges[i], &d = body.edges[k];
             if (are_opposite(body, e, d)) {
-                const Vec3 n = normalized(cross(e.along, d.along));
+                const Vec3 n = unit_of(cross(e.along, d.along));
                 shortlist.offer(boxed_along(body, n, shortlist.limit()));
             }
         }
@@ -104,7 +104,7 @@ Axes least_planar_axes(std::span<const Vec3> points, const ConvexHull& hull) {
     if (!(norm(n) > 0)) {
         return spread;
     }
-    n = normalized(n);
+    n = unit_of(n);
     const Frame frame(n);
     std::vector<PolygonEdge> edges;
     for (std::size_t k = 0; k < hull.vertices.size(); ++k) {
@@ -116,7 +116,7 @@ Axes least_planar_axes(std::span<const Vec3> points, const ConvexHull& hull) {
     if (r.x == 0 && r.y == 0) {
         return spread;
     }
-    const Vec3 u = normalized(r.x * frame.u + r.y * frame.v);
+    const Vec3 u = unit_of(r.x * frame.u + r.y * frame.v);
     return {u, cross(n, u), n};
 }
 

@@ -23,8 +23,8 @@ struct alignas(kAlignment<Four>) Sides {
     Four error, velocity_error, drift_error;
 };
 
-Four reach(const BasicObb<Four>& box, const Vector3<Four>& n,
-           const std::array<Vector3<Four>, 3>& axes) {
+Four radius_along(const BasicObb<Four>& box, const Vector3<Four>& n,
+                  const std::array<Vector3<Four>, 3>& axes) {
     const Vector3<Four>& h = box.half_extents;
     return h.x * absolute(dot(n, axes[0])) + h.y * absolute(dot(n, axes[1])) +
            h.z * absolute(dot(n, axes[2]));
@@ -40,13 +40,14 @@ Four step_along(const Vector3<Four>& n, const OwnReach& own, const Sides& s,
                 const LaneMotion& motion, bool is_long) {
     const Four zero = every(0.0, own.width);
     const Four offset = dot(n, s.between);
-    const Four gap = absolute(offset) - own.width - reach(s.other, n, s.other.axes) - s.error;
+    const Four gap =
+        absolute(offset) - own.width - radius_along(s.other, n, s.other.axes) - s.error;
     const auto is_open = gap > zero;
     if (is_none(is_open)) {
         return zero;
     }
     const Four w = flipped(dot(n, s.velocity), offset) - own.velocity_spread -
-                   reach(s.other, n, s.other_velocity) - s.velocity_error;
+                   radius_along(s.other, n, s.other_velocity) - s.velocity_error;
     const Four along_other = dot(n, s.other_axis);
     const Four other_square = 1.0 + 0x1p-48 + motion.skew - along_other * along_other;
     const Four lever = square_root(select(own.lever_square > zero, own.lever_square, zero));
@@ -56,7 +57,7 @@ Four step_along(const Vector3<Four>& n, const OwnReach& own, const Sides& s,
         const Four own_circle = select(motion.is_still, own.width,
                                        absolute(dot(n, motion.axis)) * s.span + s.radius * lever);
         const Four other_circle =
-            select(s.other_is_still, reach(s.other, n, s.other.axes),
+            select(s.other_is_still, radius_along(s.other, n, s.other.axes),
                    absolute(along_other) * s.other_span + s.other_radius * other_lever);
         const Four circle_gap =
             flipped(dot(n, s.circles), offset) - own_circle - other_circle - s.error;
@@ -132,8 +133,8 @@ OBB_WIDE void set_turns(LaneMotion& motion, const Turn& a, const Turn& b) {
     }
 }
 
-OBB_WIDE std::array<double, 2> times_apart(const LaneMotion& motion, const BasicObb<Four>& boxes,
-                                           const MovingFrame& frame, double wanted) {
+OBB_WIDE std::array<double, 2> box_steps(const LaneMotion& motion, const BasicObb<Four>& boxes,
+                                         const MovingFrame& frame, double wanted) {
     const double speeds = frame.spin_a->speed() + frame.spin_b->speed();
     // Circles say more than parabolas only where much turning is asked about, or left at all.
     const bool is_long = speeds * wanted > 0.5 || speeds * frame.remaining > 8;

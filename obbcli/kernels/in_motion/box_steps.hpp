@@ -26,8 +26,7 @@ void set_turns(LaneMotion& motion, const Turn& a, const Turn& b);
 // Times for which two pairs, lane k of A's boxes with lane 2 + k of B's, are proven apart from now
 // on. Positions are relative to each body's own pivot: 0 where no face axis shows a gap,
 // infinite where they never meet. It takes less to say how far within `wanted` they are apart.
-[[nodiscard]] std::array<double, 2> times_apart(const LaneMotion& motion,
-                                                const BasicObb<Four>& boxes,
-                                                const MovingFrame& frame, double wanted);
+[[nodiscard]] std::array<double, 2> box_steps(const LaneMotion& motion, const BasicObb<Four>& boxes,
+                                              const MovingFrame& frame, double wanted);
 
 } // namespace obb

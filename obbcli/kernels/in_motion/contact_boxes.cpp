@@ -19,7 +19,7 @@ constexpr std::uint32_t kTrianglesAPop = 64;
 
 } // namespace
 
-// How long it takes a pair's boxes to move by their own sizes against each other, about.
+// About the time in which the boxes of a pair move by their own sizes against each other.
 double ContactQuery::window(const Entry& entry) const {
     const Vec3 wa = pair_.a().spin().velocity(), wb = pair_.b().spin().velocity();
     const Vec3 velocity = pair_.closing_velocity() + cross(wb, lane(pair_.boxes().center, 2)) -
@@ -31,8 +31,8 @@ double ContactQuery::window(const Entry& entry) const {
 }
 
 // Bodies that slide along each other would keep every pair open that was ever near. So a pair is
-// opened for a while, and longer each time that it has not parted since; then it is looked at as a
-// whole again, unless all its parts were proven apart for good.
+// opened for a window, each time for twice as long if it has not parted since. After the window the
+// pair is looked at as a whole again, unless all its parts were proven apart until the duration.
 void ContactQuery::close_after(Entry& entry, double wide) {
     const double stop = entry.time + wide * power_of_two(static_cast<int>(entry.reopened));
     if (!(stop > entry.time) || !(stop + 2 * (stop - entry.time) < entry.end)) {
@@ -47,7 +47,8 @@ void ContactQuery::close_after(Entry& entry, double wide) {
     entry.end = stop;
 }
 
-// Whether a pair that was opened before needs not be opened again now.
+// Whether a pair that comes back after its window is done with: nothing in the window needed it, or
+// it is apart as a whole, for good or for so long that it goes back into the queue.
 bool ContactQuery::is_over(const Entry& entry) {
     if (!windows_.close(entry.opened)) {
         return true;
@@ -64,7 +65,8 @@ bool ContactQuery::is_over(const Entry& entry) {
     return has_parted;
 }
 
-// Replaces a pair by its children's, each pushed on as far as its own boxes prove it apart.
+// Replaces a pair by the pairs of its children, each of which goes into the queue with the time
+// until which its own boxes prove it apart.
 template <bool kOpensA>
 void ContactQuery::open(Entry entry) {
     pair_.set_time(entry.time);
@@ -113,7 +115,7 @@ double ContactQuery::step_of_boxes(const Entry& entry, double margin) {
     return pair_.steps(now, entry.end - entry.time)[0];
 }
 
-// A node that stands for what it holds: pushed on as long as the boxes are apart.
+// Nodes that stand for what they hold: the pair goes on while the boxes are apart.
 void ContactQuery::meet_boxes(const Entry& entry) {
     const std::optional<double> time = later(entry, step_of_boxes(entry, 0));
     if (!time) {

@@ -29,15 +29,6 @@ int dimension_along(const Triangle& t, Vec3 n, double size) {
     return corners - 1;
 }
 
-Vec3 unit_or(Vec3 v, Vec3 fallback) {
-    const double scale = norm_inf(v);
-    if (!(scale > 0)) {
-        return fallback;
-    }
-    const Vec3 w = (1.0 / scale) * v;
-    return (1.0 / norm(w)) * w;
-}
-
 // The point of a box that is nearest to p.
 Vec3 nearest_in(const Obb& box, Vec3 p) {
     Vec3 result = box.center;
@@ -76,7 +67,8 @@ ContactPlace place_of_triangles(MovingPair& pair, const Contact& contact) {
         point_a = meeting ? meeting->point : point_a;
         point_b = meeting ? meeting->point : point_b;
     }
-    const TriangleStep step = time_apart(a, b, now, is_apart ? point_b - point_a : Vec3{0, 0, 0});
+    const TriangleStep step =
+        triangle_step(a, b, now, is_apart ? point_b - point_a : Vec3{0, 0, 0});
     const Vec3 towards_b = -1.0 * now.closing_velocity;
     const Vec3 last_resort = meeting && meeting->touch.axis.kind != AxisKind::kNone
                                  ? meeting->touch.normal

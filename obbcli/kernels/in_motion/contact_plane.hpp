@@ -1,5 +1,5 @@
-// The plane between two bodies that touch after a translation: who is on his own side of it, each
-// in his own place at t = 0, touches nobody on the other side any earlier.
+// The plane between two bodies that touch after a translation. A part of A on A's side of the plane
+// and a part of B on B's side, each where it is at t = 0, touch no earlier than the bodies do.
 #pragma once
 
 #include "numbers/vec.hpp"

@@ -39,8 +39,10 @@ bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
            !(options_.limits.boxes.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
 }
 
-// The time up to which a step proves a pair apart, rounded down; nothing where others see to the
-// rest. A step proves a half-open interval, so reaching the duration exactly is not enough.
+// The time up to which a step proves a pair apart, rounded down. Nothing where the entry is done
+// with: the pair is apart until the duration, or until the end of its window, where the pair that
+// the window was opened for answers for the rest. A step proves a half-open interval, so that
+// reaching the duration exactly is not enough.
 std::optional<double> ContactQuery::later(const Entry& entry, double step) {
     const double sum = entry.time + step;
     const double below = sum * (1 - 0x1p-52);
@@ -54,8 +56,8 @@ std::optional<double> ContactQuery::later(const Entry& entry, double step) {
     return std::max(entry.time, below);
 }
 
-// Of equal times the deepest comes first, so that triangles are reached early; of a leaf, what it
-// still has after what it had.
+// Of entries with equal times the deepest pair comes first, so that triangles are reached early.
+// The rest of a leaf comes after the triangles that it has pushed.
 void ContactQuery::push(const Entry& entry) {
     queue_.push(entry, entry.time, entry.next > 0 ? 0 : entry.a.depth + entry.b.depth);
 }
@@ -110,7 +112,7 @@ std::uint64_t ContactQuery::key_of(const NodeRef& a, const NodeRef& b) {
     return std::uint64_t{a.begin} << 32U | b.begin;
 }
 
-// A contact ends the question, or is one of many.
+// A contact ends the search, or with `each_pair` waits to be taken.
 void ContactQuery::report(Contact contact) {
     if (!options_.each_pair) {
         finish(contact);
@@ -120,8 +122,8 @@ void ContactQuery::report(Contact contact) {
     found_.add(contact);
 }
 
-// Of pairs that stalled at a time. A contact that was proven in the bracket of undecided ones ends
-// it.
+// Takes the verdict on pairs that stalled at a time. A contact that was proven within the bracket
+// of undecided pairs ends that bracket.
 void ContactQuery::settle(const StalledPairs::Verdict& verdict, double time) {
     if (!verdict.is_final) {
         return;
@@ -144,7 +146,7 @@ void ContactQuery::name_triangles(Contact& contact) const {
     }
 }
 
-// Others may still come at the same time.
+// Whether a contact waits that no other can come before: of equal times the list decides.
 bool ContactQuery::is_ready() const { return found_.next_low() < queue_.next_time(); }
 
 std::optional<Contact> ContactQuery::take() {
@@ -170,7 +172,7 @@ void ContactQuery::finish(std::optional<Contact> contact) {
     queue_.clear();
 }
 
-// A pair that is apart, but turns too fast for a step that a double can tell from none.
+// Ends the search where a pair is apart but turns so fast that its step is lost to rounding.
 void ContactQuery::give_up(double time) {
     finish(std::nullopt);
     lower_bound_ = std::min(time, lower_bound_);

@@ -90,7 +90,7 @@ class ContactQuery {
         TieWait<Entry> nodes;
         std::size_t plane;
         std::uint32_t next_a, next_b;
-        std::array<SeenLately, 2> seen;
+        std::array<RecentVertices, 2> seen;
     };
 
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
@@ -137,7 +137,7 @@ class ContactQuery {
     MovingPair pair_;
     ContactQueryOptions options_;
     double time_tolerance_, distance_tolerance_; // scaled
-    TimeQueue<Entry> queue_;
+    BoundQueue<Entry> queue_;
     Windows windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;

@@ -6,7 +6,8 @@ namespace obb {
 
 namespace {
 
-// As `Query` takes them, so that a limit of pops ends either at the same place.
+// Pops of one slice. A single question takes slices of this size too, so that a limit of pops ends
+// the row and the question after the same pop.
 constexpr std::uint64_t kPopsASlice = 16'384;
 
 [[nodiscard]] std::uint64_t less(std::uint64_t left, std::uint64_t used) {
@@ -123,7 +124,8 @@ void SweepRow::leave_open(double low) {
     answer_.low = low;
 }
 
-// As `contact_of` in questions/describe.py.
+// A row says of a contact what the single question says of it: the tests hold both to the same
+// bits.
 void SweepRow::tell(ContactQuery& query, const Contact& found) {
     const bool by_boxes = found.evidence == Evidence::kBoxes;
     const bool is_at_start = found.high == 0 && (by_boxes || limits_->clearance > 0);

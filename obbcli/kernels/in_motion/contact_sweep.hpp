@@ -1,5 +1,5 @@
-// The first contacts of one pair of trees in many motions: each as `Query` in first_contact.py asks
-// it, pop by pop, but for what all have in common.
+// The first contacts of one pair of trees in many motions. Each row has the answer and the counts
+// of a single question about its motion, pop by pop; what all rows have in common is asked once.
 #pragma once
 
 #include "at_rest/static_query.hpp"

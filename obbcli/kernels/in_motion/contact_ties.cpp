@@ -1,7 +1,6 @@
-// Translations after which thousands of pairs touch at the same time: faces that land on each
-// other, triangles that are there many times. Boxes, which are rounded, cannot tell that none of
-// them is earlier than the one that is known, and to ask every pair would take the product of their
-// numbers. The plane of that contact can tell it of all vertices under two nodes, one by one.
+// How a contact query tells ties: translations after which thousands of pairs touch at the same
+// time, as faces do that land on each other, or triangles that a mesh holds many times. The plane
+// of the earliest contact shows of all vertices under two nodes that none touches earlier.
 #include "in_motion/contact_query.hpp"
 
 #include <algorithm>
@@ -23,11 +22,11 @@ constexpr double kReachesBeyond = 8 * kBoxRounding;
 
 } // namespace
 
-// What stands for triangles may meet earlier than they.
+// Whether boxes stand for triangles: those may meet earlier than the triangles do.
 bool ContactQuery::has_limits() const { return options_.limits.boxes != BoxLimits{}; }
 
-// Asks two triangles under a pair before all that may be earlier is opened: of pairs that touch at
-// one time the boxes are all earlier than the first triangles.
+// Asks when two triangles under a pair touch, ahead of their turn. Where many pairs touch at one
+// time, all their boxes come before the first triangles in the queue.
 void ContactQuery::probe(const Entry& entry) {
     if (!pair_.is_translation() || options_.each_pair || has_limits() ||
         counts_.pops < std::max(next_probe_, kProbePatience)) {
@@ -43,7 +42,8 @@ void ContactQuery::probe(const Entry& entry) {
     pair_.clearance() > 0 ? solve_within_clearance(at) : meet_in_translation(at);
 }
 
-// Of a leaf, its first triangle.
+// The pair with one of its nodes replaced by the child that may be in contact first, or by the
+// first triangle of a leaf.
 ContactQuery::Entry ContactQuery::nearer_half(const Entry& entry, bool opens_a) {
     const NodeRef &ref = opens_a ? entry.a : entry.b, other = opens_a ? entry.b : entry.a;
     const TreeView& tree = (opens_a ? pair_.a() : pair_.b()).tree();
@@ -96,7 +96,7 @@ bool ContactQuery::may_tie(const Entry& entry) const {
     return crowd_.may_look_at(entry.a.triangle_count() + entry.b.triangle_count());
 }
 
-// Whether boxes are on their own sides, but for what they are larger than what they hold.
+// Whether both boxes are on their own sides of the plane, up to their rounding.
 bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
     const auto reaches = [](const MovingTree& body, const NodeRef& ref, Vec3 n, double top) {
         const Obb box = body.box(ref);
@@ -110,9 +110,9 @@ bool ContactQuery::are_sides(const Entry& entry, const Tie& tie) const {
            reaches(pair_.b(), entry.b, -tie.normal, -tie.bottom_of_b);
 }
 
-// Looks for a plane that may prove that nothing of a pair touches before the earliest contact
-// known; else the pair is opened. The bodies as a whole come first: of those there is nothing left
-// to do.
+// Looks for a plane that may prove that nothing under a pair touches before the earliest contact
+// known, and opens the pair where there is none. The bodies as a whole are looked at first: a plane
+// that holds for them ends the search.
 void ContactQuery::look_for_tie(const Entry& entry) {
     if (crowd_.starts_with_all()) {
         Entry all = entry;
@@ -145,7 +145,7 @@ bool ContactQuery::end_wait(SliceClock& clock) {
         return false;
     }
     const ContactPlane& plane = planes_[wait.plane].plane;
-    const auto all_hold = [&](const MovingTree& body, std::uint32_t position, SeenLately& seen,
+    const auto all_hold = [&](const MovingTree& body, std::uint32_t position, RecentVertices& seen,
                               const auto& holds) {
         const Triangle t = body.posed_triangle({position, position + 1, 0, 0});
         const Corners& corners = body.tree().corners[position];

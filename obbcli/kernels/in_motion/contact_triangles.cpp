@@ -52,7 +52,7 @@ void ContactQuery::meet_within_clearance(const Entry& entry) {
     const Gap gap = pair_.gap_at(entry.refs(), entry.time);
     const PlacedTriangles placed = pair_.triangles_at(entry.refs(), entry.time);
     const MovingFrame now = pair_.frame(0, entry.time);
-    const TriangleStep step = time_apart(placed.a, placed.b, now, gap.direction);
+    const TriangleStep step = triangle_step(placed.a, placed.b, now, gap.direction);
     const std::optional<double> time = later(entry, step.time);
     if (!time || (exact_ && *time >= exact_->high)) {
         return;
@@ -100,11 +100,11 @@ void ContactQuery::meet_triangles(const Entry& entry) {
     const MovingFrame now = pair_.frame(0, entry.time);
     TriangleStep step;
     if (pair_.clearance() == 0) {
-        step = time_apart(a, b, now, Vec3{0, 0, 0});
+        step = triangle_step(a, b, now, Vec3{0, 0, 0});
     }
     // The features' axes alone cannot prove two vertices further apart than they themselves show.
     if (step.time == 0) {
-        step = time_apart(a, b, now, pair_.gap_at(entry.refs(), entry.time).direction);
+        step = triangle_step(a, b, now, pair_.gap_at(entry.refs(), entry.time).direction);
     }
     const std::optional<double> time = later(entry, step.time);
     if (!time) {

@@ -31,7 +31,7 @@ MovingPair::MovingPair(const TreeView& a, const Pose& pose_a, const Screw& screw
 void MovingPair::set_units(double duration, double clearance) {
     const Vec3 between = b_.screw().pivot - a_.screw().pivot;
     const Vec3 velocity = b_.screw().linear_velocity - a_.screw().linear_velocity;
-    const double largest = std::max({a_.reach(), b_.reach(), norm_1(between)});
+    const double largest = std::max({a_.farthest(), b_.farthest(), norm_1(between)});
     if (!std::isfinite(largest) || !std::isfinite(norm_1(velocity))) {
         throw std::domain_error("positions or velocities exceed the range of double");
     }

@@ -92,9 +92,9 @@ class MovingPair {
     // Puts the boxes of two parts of each body where they are at the present time.
     void place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b);
     [[nodiscard]] const BasicObb<Four>& boxes() const { return *boxes_; }
-    // How long the placed boxes stay apart, pair by pair, as times_apart() says.
+    // How long the placed boxes stay apart, pair by pair, as box_steps() says.
     [[nodiscard]] std::array<double, 2> steps(const MovingFrame& frame, double wanted) const {
-        return times_apart(*motion_, *boxes_, frame, wanted);
+        return box_steps(*motion_, *boxes_, frame, wanted);
     }
 
     // Triangles at a time; this sets the time.
@@ -114,7 +114,7 @@ class MovingPair {
                          std::size_t lane);
 
     MovingTree a_, b_;
-    // On the heap: vectors this wide want more alignment than those who hold queries give.
+    // On the heap: vectors this wide want more alignment than the objects that hold queries have.
     std::unique_ptr<LaneMotion> motion_ = std::make_unique<LaneMotion>();
     std::unique_ptr<BasicObb<Four>> boxes_ = std::make_unique<BasicObb<Four>>(); // of the parts
     int length_exponent_ = 0, time_exponent_ = 0;

@@ -38,7 +38,7 @@ MovingTree::MovingTree(const TreeView& tree, const Pose& pose, const Screw& scre
         screw_.pivot = ball.center;
     }
     extent_ = ball.radius;
-    reach_ = norm_1(ball.center - screw_.pivot) + ball.radius;
+    farthest_ = norm_1(ball.center - screw_.pivot) + ball.radius;
 }
 
 void MovingTree::set_units(int length_exponent, int time_exponent) {

@@ -17,7 +17,7 @@ class MovingTree {
     MovingTree(const TreeView& tree, const Pose& pose, const Screw& screw);
 
     // Bounds the distance of any point from the pivot, mesh units.
-    [[nodiscard]] double reach() const { return reach_; }
+    [[nodiscard]] double farthest() const { return farthest_; }
     // A radius that holds the body, mesh units.
     [[nodiscard]] double extent() const { return extent_; }
     [[nodiscard]] const Screw& screw() const { return screw_; }
@@ -54,7 +54,7 @@ class MovingTree {
     Pose pose_;
     Screw screw_;
     Spin spin_;
-    double reach_ = 0, extent_ = 0;
+    double farthest_ = 0, extent_ = 0;
     double box_error_ = 0;
     double skew_ = 0;
     int length_exponent_ = 0;

@@ -1,5 +1,5 @@
-// How long pairs that are near stay near, and what is said of those that rounding lets nobody tell
-// from contact: brackets as wide as what is not known.
+// How long pairs that are near stay near, and what is said of pairs that cannot be
+// told from contact: brackets as wide as what is not known.
 #pragma once
 
 #include "in_motion/contact.hpp"

@@ -11,15 +11,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Vec3 unit(Vec3 v) {
-    const double scale = norm_inf(v);
-    if (!(scale > 0)) {
-        return {0, 0, 0};
-    }
-    const Vec3 w = (1.0 / scale) * v;
-    return (1.0 / norm(w)) * w;
-}
-
 std::array<Vec3, 3> edges_of(const Triangle& t) { return {t[1] - t[0], t[2] - t[1], t[0] - t[2]}; }
 
 // Projections of points and velocities on one axis, and what bounds their accelerations.
@@ -60,7 +51,7 @@ class TriangleAxes {
         if (!(gap_along(direction, pa, pb) > 0)) {
             return; // before a root and a division are spent on it
         }
-        Vec3 n = unit(direction);
+        Vec3 n = unit_or(direction, {0, 0, 0});
         const double gap = gap_along(n, pa, pb);
         if (!(gap > error_)) {
             return;
@@ -203,8 +194,8 @@ SpinningTriangle::SpinningTriangle(const Triangle& t, const Spin& spin) : points
 
 // All axes of the complete set (Eberly 2008 §4, with the in-plane axes that coplanar triangles
 // need), the rotation axes, and the hint.
-TriangleStep time_apart(const SpinningTriangle& a, const SpinningTriangle& b,
-                        const MovingFrame& frame, Vec3 hint) {
+TriangleStep triangle_step(const SpinningTriangle& a, const SpinningTriangle& b,
+                           const MovingFrame& frame, Vec3 hint) {
     TriangleAxes axes(a, b, frame);
     const auto e = edges_of(a.points), f = edges_of(b.points);
     const Vec3 normal_a = cross(e[0], e[1]), normal_b = cross(f[0], f[1]);

@@ -29,7 +29,7 @@ struct TriangleStep {
 // Axes fixed in the world, and the best of them fixed in A and in B as well: a gap between faces
 // that turn together closes slowly only when looked at from one of them. For a clearance the
 // direction between the closest points must be among the axes; it is passed as `hint` (or zero).
-[[nodiscard]] TriangleStep time_apart(const SpinningTriangle& a, const SpinningTriangle& b,
-                                      const MovingFrame& frame, Vec3 hint);
+[[nodiscard]] TriangleStep triangle_step(const SpinningTriangle& a, const SpinningTriangle& b,
+                                         const MovingFrame& frame, Vec3 hint);
 
 } // namespace obb

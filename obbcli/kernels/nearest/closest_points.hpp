@@ -49,8 +49,8 @@ struct TriangleDistance {
 // A point of two triangles that intersect, rounded to double.
 [[nodiscard]] Vec3 common_point(const Triangle& a, const Triangle& b);
 
-// An order of triangles, any at all: who treats two of them in this order gives the same digits
-// when they are swapped.
+// A total order of triangles. A function that takes two triangles in this order returns the same
+// digits when they are swapped.
 [[nodiscard]] bool precedes(const Triangle& a, const Triangle& b);
 
 } // namespace obb

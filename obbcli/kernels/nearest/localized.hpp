@@ -57,8 +57,8 @@ struct LocalPair {
 
 template <typename Real>
 [[nodiscard]] double reach_of(const Corners3<Real>& corners) {
-    return reach(Triangle{nearest_double(corners[0]), nearest_double(corners[1]),
-                          nearest_double(corners[2])});
+    return largest_coordinate(Triangle{nearest_double(corners[0]), nearest_double(corners[1]),
+                                       nearest_double(corners[2])});
 }
 
 template <typename Real>

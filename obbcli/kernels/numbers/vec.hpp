@@ -56,6 +56,16 @@ template <typename Real>
     return b.x < yz ? yz : b.x;
 }
 
+// The direction of a vector of any length, to rounding; that of zero is the fallback.
+[[nodiscard]] inline Vec3 unit_or(Vec3 v, Vec3 fallback) {
+    const double scale = norm_inf(v);
+    if (!(scale > 0)) {
+        return fallback;
+    }
+    const Vec3 w = (1.0 / scale) * v;
+    return (1.0 / norm(w)) * w;
+}
+
 // Rows of a 3x3 matrix.
 struct Mat3 {
     std::array<Vec3, 3> rows;

@@ -9,7 +9,7 @@
 namespace obb {
 
 Vec3 face_normal(const Triangle& triangle, const Feature&, const Vec3& towards) {
-    const int exponent = -exponent_of(reach(triangle)) - 1;
+    const int exponent = -exponent_of(largest_coordinate(triangle)) - 1;
     const Vec3 origin = scaled(triangle[0], exponent);
     const Vec3 normal = unit_normal(placed(triangle, origin, Vec3{0, 0, 0}, exponent), towards);
     return dot(normal, towards) < 0 ? -normal : normal;
@@ -22,7 +22,7 @@ Vec3 face_normal(const Obb& box, const Feature& feature, const Vec3& towards) {
         return best;
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 axis = unit(box.axes[i], towards);
+        const Vec3 axis = unit_by_powers(box.axes[i], towards);
         for (const int side : {-1, 1}) {
             const Vec3 normal = static_cast<double>(side) * axis;
             const bool lies_in =
@@ -51,7 +51,7 @@ Vec3 smooth_normal(const Obb& box, const Vec3& point, const Vec3& normal) {
         const double along = dot(box.axes[i], d) / h[i];
         gradient = gradient + (along * (least / h[i])) * box.axes[i];
     }
-    return unit(gradient, normal);
+    return unit_by_powers(gradient, normal);
 }
 
 } // namespace obb

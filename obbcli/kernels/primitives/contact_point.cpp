@@ -14,7 +14,8 @@ namespace {
 
 // B's way relative to A until `time`, times 2^exponent; scaled so that nothing overflows early.
 [[nodiscard]] Vec3 relative_way(const LinearMotion& motion, double time, int exponent) {
-    const int speed = exponent_of(std::max(reach(motion.velocity_a), reach(motion.velocity_b)));
+    const int speed = exponent_of(
+        std::max(largest_coordinate(motion.velocity_a), largest_coordinate(motion.velocity_b)));
     int moment = 0;
     const double fraction = std::frexp(time, &moment);
     const Vec3 w = scaled(motion.velocity_b, -speed - 1) - scaled(motion.velocity_a, -speed - 1);
@@ -64,7 +65,7 @@ template <typename A, typename B>
 Vec3 contact_point(const A& a, const B& b, const LinearMotion& motion, double time,
                    const Touch& touch) {
     // All coordinates below one, which the polygons count on.
-    const int exponent = exponent_of(larger(reach(a), reach(b))) + 2;
+    const int exponent = exponent_of(larger(largest_coordinate(a), largest_coordinate(b))) + 2;
     const Vec3 origin = scaled(origin_of(a), -exponent);
     const A at_a = placed(a, origin, Vec3{0, 0, 0}, -exponent);
     const B at_b = placed(b, origin, relative_way(motion, time, -exponent), -exponent);

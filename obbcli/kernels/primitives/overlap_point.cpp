@@ -22,7 +22,7 @@ void visit_half_spaces(const Triangle& t, Visit&& visit) {
     visit(HalfSpace{normal, t[0]});
     visit(HalfSpace{-normal, t[0]});
     for (std::size_t k = 0; k < 3; ++k) {
-        visit(HalfSpace{unit(cross(t[(k + 1) % 3] - t[k], normal), Vec3{0, 0, 0}), t[k]});
+        visit(HalfSpace{unit_by_powers(cross(t[(k + 1) % 3] - t[k], normal), Vec3{0, 0, 0}), t[k]});
     }
 }
 

@@ -23,8 +23,9 @@ namespace {
 
 template <typename A, typename B>
 [[nodiscard]] bool in_filter_range(const A& a, const B& b, const LinearMotion& m) {
-    return larger(reach(a), reach(b)) <= kLargestFiltered &&
-           larger(larger(reach(m.velocity_a), reach(m.velocity_b)), m.duration) <= kLargestFiltered;
+    return larger(largest_coordinate(a), largest_coordinate(b)) <= kLargestFiltered &&
+           larger(larger(largest_coordinate(m.velocity_a), largest_coordinate(m.velocity_b)),
+                  m.duration) <= kLargestFiltered;
 }
 
 // Calls `solve` with the pair in integers of the narrowest width that holds it.

@@ -24,7 +24,7 @@ namespace {
     PlaneSides result;
     for (unsigned k = 0; k < 3; ++k) {
         const Vec3 w = other[k] - plane[0];
-        const double error = triple_error(sizes, reach(w));
+        const double error = triple_error(sizes, largest_coordinate(w));
         const double value = dot(normal, w);
         result.above |= static_cast<unsigned>(value > error) << k;
         result.below |= static_cast<unsigned>(value < -error) << k;
@@ -78,7 +78,7 @@ namespace {
                                      b[0] - a[0],   b[1] - a[0], b[2] - a[0]};
     double extent = 0;
     for (const Vec3& p : points) {
-        extent = larger(extent, reach(p));
+        extent = larger(extent, largest_coordinate(p));
     }
     const auto separated_along = [&](const Vec3& axis) {
         const double error = kTripleError * norm_1(axis) * extent + kUnderflow;
@@ -125,7 +125,7 @@ namespace {
     if (boxes_apart(a, b)) {
         return {false, false};
     }
-    if (larger(reach(a), reach(b)) > kLargestFiltered) {
+    if (larger(largest_coordinate(a), largest_coordinate(b)) > kLargestFiltered) {
         return {triangles_intersect_exactly(a, b, kAllAxes), true};
     }
     StillSat sat;

@@ -25,7 +25,7 @@ struct Feature {
     std::uint8_t dimension = 3; // 0 vertex, 1 edge, 2 face, 3 the shape as a whole
 };
 
-// Which features meet, in the order of FEATURES in words.py: none that could be told, those of A
+// Which features meet, as a code that Python has words for: none that could be told, those of A
 // and B by their dimensions, or boxes that stand for triangles.
 using FeatureCode = std::uint8_t;
 constexpr FeatureCode kNoFeature = 0, kBoxFeature = 10;

@@ -18,12 +18,12 @@ namespace obb {
 }
 
 // The largest magnitude of a coordinate or length.
-[[nodiscard]] inline double reach(const Vec3& v) { return norm_inf(v); }
-[[nodiscard]] inline double reach(const Triangle& t) {
-    return largest(reach(t[0]), reach(t[1]), reach(t[2]));
+[[nodiscard]] inline double largest_coordinate(const Vec3& v) { return norm_inf(v); }
+[[nodiscard]] inline double largest_coordinate(const Triangle& t) {
+    return largest(largest_coordinate(t[0]), largest_coordinate(t[1]), largest_coordinate(t[2]));
 }
-[[nodiscard]] inline double reach(const Obb& box) {
-    return larger(reach(box.center), reach(box.half_extents));
+[[nodiscard]] inline double largest_coordinate(const Obb& box) {
+    return larger(largest_coordinate(box.center), largest_coordinate(box.half_extents));
 }
 
 } // namespace obb

@@ -38,8 +38,10 @@ namespace obb {
             scaled(box.half_extents, exponent)};
 }
 
-[[nodiscard]] inline Vec3 unit(const Vec3& v, const Vec3& otherwise) {
-    const double size = reach(v);
+// The direction of a vector. A power of two scales it, which rounds nothing: shapes in any unit
+// have the same directions, bit for bit.
+[[nodiscard]] inline Vec3 unit_by_powers(const Vec3& v, const Vec3& otherwise) {
+    const double size = largest_coordinate(v);
     if (!(size > 0)) {
         return otherwise;
     }
@@ -56,8 +58,9 @@ namespace obb {
     }
     const Vec3& u = e[(longest + 1) % 3];
     const Vec3& v = e[(longest + 2) % 3];
-    return unit(cross(scaled(u, -exponent_of(reach(u))), scaled(v, -exponent_of(reach(v)))),
-                otherwise);
+    return unit_by_powers(cross(scaled(u, -exponent_of(largest_coordinate(u))),
+                                scaled(v, -exponent_of(largest_coordinate(v)))),
+                          otherwise);
 }
 
 } // namespace obb

@@ -48,13 +48,13 @@ void FileBlocks::load_blocks(std::size_t first, std::size_t last) {
             if (end > first) {
                 load_run(first, end);
             }
-            first = end + 1; // whoever stands there is loaded, or of the next group
+            first = end + 1; // this block is loaded, or of the next group
         }
         first = stop;
     }
 }
 
-// Whoever finds the flag set sees the bytes; nobody reads them before.
+// A thread that finds the flag set sees the bytes; no thread reads them before.
 void FileBlocks::load_run(std::size_t first, std::size_t last) {
     read(first * kBlockBytes, std::min(last * kBlockBytes, size()));
     for (std::size_t block = first; block < last; ++block) {
