@@ -180,7 +180,7 @@ def _reader(suffix: str) -> Callable[[Source], MeshArrays]:
     if form.kind is not None:
         reader: Callable[[Source], MeshArrays] = module.cell_reader(form.kind, suffix)
     else:
-        reader = getattr(module, f"read_{form.module}")
+        reader = getattr(module, f"read_{form.key}")
     return reader
 
 
@@ -193,7 +193,7 @@ def _parts_reader(suffix: str) -> Callable[[Source], Iterable[PlacedPart]]:
         read = _reader(suffix)
         return lambda source: whole(read, source)
     module = import_module(f"obbcli.mesh.formats.{form.parts}")
-    reader: Callable[[Source], Iterable[PlacedPart]] = getattr(module, f"parts_{form.module}")
+    reader: Callable[[Source], Iterable[PlacedPart]] = getattr(module, f"parts_{form.key}")
     return reader
 
 

@@ -27,7 +27,7 @@ from mesh_files.plain_files import FILES
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh.formats.nastran import read_nastran
+from obbcli.mesh.formats.nastran.reader import read_nastran
 from obbcli.mesh.source import Source, read_source
 
 VTK_TEXT = b"""# vtk DataFile Version 3.0

@@ -117,7 +117,7 @@ def test_format_table_is_the_loader_s() -> None:
     }
 
     assert shown == {
-        suffix: (form.name, "meshio" if form.kind else "VTK" if form.module == "vtk" else "obbtree")
+        suffix: (form.name, "meshio" if form.kind else "VTK" if form.key == "vtk" else "obbtree")
         for suffix, form in FORMATS.items()
     }
 

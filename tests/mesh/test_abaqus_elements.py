@@ -7,8 +7,8 @@ import pytest
 from mesh_files.abaqus_decks import deck, volume
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats.abaqus_elements import shape_of
-from obbcli.mesh.formats.cell_types import CELLS
+from obbcli.mesh.formats.abaqus.elements import shape_of
+from obbcli.mesh.formats.cells.types import CELLS
 
 #: The unit cube, an apex above it, and the middle of each of its edges, as VTK numbers them.
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]

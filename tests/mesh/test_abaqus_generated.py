@@ -7,7 +7,7 @@ import pytest
 from mesh_files.abaqus_decks import deck
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats import abaqus_generated
+from obbcli.mesh.formats.abaqus import generated as abaqus_generated
 
 SQUARE = "*NODE\n1, 0, 0, 0\n5, 4, 0, 2\n101, 0, 1, 0\n105, 4, 1, 2\n"
 TRIANGLE = "*ELEMENT, TYPE=S3\n1, 1, {}, 101\n"

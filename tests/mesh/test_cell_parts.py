@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from mesh_files.cell_files import CUBE
 
-from obbcli.mesh.formats.cell_parts import CellPart, joined_surface
-from obbcli.mesh.formats.cell_surface import Block, surface
+from obbcli.mesh.formats.cells.parts import CellPart, joined_surface
+from obbcli.mesh.formats.cells.surface import Block, surface
 from obbcli.mesh.source import Source
 
 

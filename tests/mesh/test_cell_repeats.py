@@ -8,7 +8,7 @@ from mesh_files.cell_files import POINTS, write
 from mesh_files.nastran_decks import CUBE, TETRA
 
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh.formats.cell_surface import Block, surface
+from obbcli.mesh.formats.cells.surface import Block, surface
 from obbcli.mesh.source import Source
 
 HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7]

@@ -9,8 +9,8 @@ from mesh_files.cell_files import CUBE, HEXAHEDRON, POINTS, SURFACE_KINDS, VOLUM
 
 from obbcli.errors import MeshError
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.mesh.formats import cell_surface
-from obbcli.mesh.formats.cell_surface import Block
+from obbcli.mesh.formats.cells import surface as cell_surface
+from obbcli.mesh.formats.cells.surface import Block
 from obbcli.mesh.source import Source
 
 

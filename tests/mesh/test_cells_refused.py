@@ -45,7 +45,7 @@ F T3 2 1 3 4
 def _through_either(request, monkeypatch):
     """Reads VTK files through VTK, and as if it were not installed."""
     if not request.param:
-        monkeypatch.setattr("obbcli.mesh.formats.vtk.has_vtk", lambda: False)
+        monkeypatch.setattr("obbcli.mesh.formats.vtk.reader.has_vtk", lambda: False)
 
 
 @pytest.mark.usefixtures("_through_either")

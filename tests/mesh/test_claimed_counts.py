@@ -7,7 +7,7 @@ import pytest
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
-from obbcli.mesh.formats import claimed_counts
+from obbcli.mesh.formats.through_meshio import claimed_counts
 
 FLAC3D = b"""* made by hand
 G 1 0 0 0

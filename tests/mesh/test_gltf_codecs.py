@@ -13,7 +13,7 @@ from mesh_files.gltf_files import SQUARE
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
-from obbcli.mesh.formats.gltf_compressed import DRACO
+from obbcli.mesh.formats.gltf.compressed import DRACO
 
 
 @pytest.mark.needs("meshopt")

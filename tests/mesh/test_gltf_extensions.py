@@ -8,7 +8,7 @@ from mesh_files.gltf_documents import instanced
 from mesh_files.gltf_files import SQUARE, document, load, shifted
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats import gltf_extensions
+from obbcli.mesh.formats.gltf import extensions as gltf_extensions
 
 
 @pytest.mark.parametrize("name", ["ACME_parts", "CESIUM_RTC", "KHR_materials", "EXT_voxels"])

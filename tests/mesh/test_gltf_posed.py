@@ -11,7 +11,7 @@ from mesh_files.gltf_documents import STRIP, morphing, skinned
 from mesh_files.gltf_files import shifted
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats.gltf_compressed import DRACO
+from obbcli.mesh.formats.gltf.compressed import DRACO
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ from mesh_files.cell_files import POINTS, write
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh.formats import gmsh
-from obbcli.mesh.formats.cell_surface import Block, surface
+from obbcli.mesh.formats.cells.surface import Block, surface
+from obbcli.mesh.formats.gmsh import reader as gmsh
 from obbcli.mesh.source import Source
 
 NODES = [(10, 0.0, 0.0, 0.0), (7, 1.0, 0.0, 0.0), (3, 0.0, 1.0, 0.0), (12, 0.0, 0.0, 1.0)]

@@ -12,7 +12,7 @@ from mesh_files.cell_files import POINTS, write
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
 from obbcli.mesh.formats import medit
-from obbcli.mesh.formats.cell_surface import Block, surface
+from obbcli.mesh.formats.cells.surface import Block, surface
 from obbcli.mesh.source import Source
 
 PLACES = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]]

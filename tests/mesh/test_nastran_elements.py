@@ -10,7 +10,7 @@ from mesh_files.nastran_decks import CUBE, CUBE_PLACES, grids
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
-from obbcli.mesh.formats import nastran_cards
+from obbcli.mesh.formats.nastran import cards as nastran_cards
 
 #: Corners of a square, then the middles of its edges 1-2, 2-3, 3-4, 4-1, raised by 1, and a centre.
 SQUARE = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0))

@@ -7,7 +7,7 @@ from mesh_files.nastran_decks import FORMS, TETRA, grids
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
-from obbcli.mesh.formats import nastran_cards
+from obbcli.mesh.formats.nastran import cards as nastran_cards
 
 AXISYMMETRIC = (
     *("CTRIAX", "CTRIAX6", "CTRAX3", "CTRAX6", "CQUADX", "CQUADX4", "CQUADX8", "CCONEAX"),

@@ -8,7 +8,7 @@ import trimesh
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh.formats import obj as obj_module
+from obbcli.mesh.formats.obj import reader as obj_module
 
 SQUARE = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 

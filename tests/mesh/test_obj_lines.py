@@ -7,7 +7,7 @@ import pytest
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh_bytes
-from obbcli.mesh.formats import obj_statements
+from obbcli.mesh.formats.obj import statements as obj_statements
 
 # The first four lines that many hand-written files begin with.
 TETRAHEDRON = b"""v 0 0 0

@@ -9,9 +9,9 @@ import pytest
 from mesh_files.cell_files import write
 
 from obbcli.mesh import Mesh, load_mesh
-from obbcli.mesh.formats import cell_surface
-from obbcli.mesh.formats.cell_surface import Block
-from obbcli.mesh.formats.cell_types import CELLS
+from obbcli.mesh.formats.cells import surface as cell_surface
+from obbcli.mesh.formats.cells.surface import Block
+from obbcli.mesh.formats.cells.types import CELLS
 from obbcli.mesh.source import Source
 
 #: Corners of each linear type, counter-clockwise from below where it has a base.

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from obbcli.errors import MeshError
-from obbcli.mesh.formats import vtk_legacy_guard, vtk_legacy_values, vtk_xml_walk
-from obbcli.mesh.formats.vtk_legacy_guard import walk_legacy
-from obbcli.mesh.formats.vtk_xml_guard import walk_xml
+from obbcli.mesh.formats.vtk import legacy_guard as vtk_legacy_guard
+from obbcli.mesh.formats.vtk import legacy_values as vtk_legacy_values
+from obbcli.mesh.formats.vtk import xml_walk as vtk_xml_walk
+from obbcli.mesh.formats.vtk.legacy_guard import walk_legacy
+from obbcli.mesh.formats.vtk.xml_guard import walk_xml
 from obbcli.mesh.source import Source
 
 HEAD = "# vtk DataFile Version {}\nmade by hand\nASCII\n"

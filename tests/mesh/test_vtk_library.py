@@ -39,7 +39,9 @@ def test_without_vtk_the_refusal_names_it(name, tmp_path, request):
     request.getfixturevalue("monkeypatch").undo()
     paths = [vtk_files.write_xml(tmp_path, vtk_files.DATA_SETS[name](), "ascii", "none")]
     paths.append(vtk_files.write_legacy(tmp_path / "a.vtk", vtk_files.DATA_SETS[name](), False, 42))
-    request.getfixturevalue("monkeypatch").setattr("obbcli.mesh.formats.vtk.has_vtk", lambda: False)
+    request.getfixturevalue("monkeypatch").setattr(
+        "obbcli.mesh.formats.vtk.reader.has_vtk", lambda: False
+    )
 
     for path in paths:
         if name in ("grid", "voxels"):
@@ -50,7 +52,7 @@ def test_without_vtk_the_refusal_names_it(name, tmp_path, request):
 
 @pytest.mark.usefixtures("_without_vtk")
 def test_vtk_that_cannot_be_imported_is_not_there():
-    from obbcli.mesh.formats.vtk_library import has_vtk
+    from obbcli.mesh.formats.vtk.library import has_vtk
 
     assert not has_vtk()
 
@@ -71,7 +73,7 @@ def test_vtk_is_asked_for_its_reading_modules_alone(tmp_path):
 
 
 def test_complaints_of_vtk_are_one_error_and_nothing_else(tmp_path, capfd, monkeypatch):
-    from obbcli.mesh.formats import vtk_library
+    from obbcli.mesh.formats.vtk import library as vtk_library
 
     path = vtk_files.write_legacy(tmp_path / "a.vtk", vtk_files.DATA_SETS["grid"](), False, 42)
     cut = path.read_bytes()[:150]
@@ -94,7 +96,7 @@ def test_a_plain_grid_is_the_same_mesh_without_vtk(tmp_path, monkeypatch):
              for b in (False, True) for v in (42, 51)]  # fmt: skip
     paths.append(vtk_files.write_xml(tmp_path, vtk_files.DATA_SETS["grid"](), "appended", "zlib"))
     through_vtk = [load_mesh(path) for path in paths]
-    monkeypatch.setattr("obbcli.mesh.formats.vtk.has_vtk", lambda: False)
+    monkeypatch.setattr("obbcli.mesh.formats.vtk.reader.has_vtk", lambda: False)
 
     for path, mesh in zip(paths, through_vtk, strict=True):
         other = load_mesh(path)

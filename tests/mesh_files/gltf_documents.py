@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mesh_files.gltf_files import SQUARE, Builder, glb
 
-from obbcli.mesh.formats.gltf_compressed import DRACO
+from obbcli.mesh.formats.gltf.compressed import DRACO
 
 TRIANGLES = [[0, 1, 2], [0, 2, 3]]
 MESHOPT = "EXT_meshopt_compression"

@@ -49,7 +49,7 @@ UNSAFE_METHODS = {
 IMPORTED_BY_NAME = {
     "obbcli/__init__.py",
     "obbcli/cli/app.py",
-    "obbcli/mesh/formats/cells.py",
+    "obbcli/mesh/formats/through_meshio/reader.py",
     "obbcli/mesh/load.py",
     "obbcli/report/schema/__init__.py",
 }

@@ -10,10 +10,10 @@ class Format(NamedTuple):
 
     Args:
         name: as people call it.
-        module: of this package, imported when first needed, or `cells` for meshio's formats.
+        module: of this package, imported when first needed; its `read_NAME` reads a file, where
+            NAME is the first word of the module.
         kind: meshio's module of the format; None where the reader is ours.
-        parts: the module whose `parts_NAME`, NAME being `module`, lists parts; None where the
-            format knows none.
+        parts: the module whose `parts_NAME` lists parts; None where the format knows none.
     """
 
     name: str
@@ -21,17 +21,22 @@ class Format(NamedTuple):
     kind: str | None = None
     parts: str | None = None
 
+    @property
+    def key(self) -> str:
+        """NAME in the names of the functions that read the format."""
+        return self.module.partition(".")[0]
+
 
 _STL = Format("STL", "stl", parts="stl_parts")
-_OBJ = Format("OBJ", "obj", parts="obj_parts")
-_PLY = Format("PLY", "ply")
-_OFF = Format("OFF", "off")
-_GLTF = Format("glTF", "gltf", parts="gltf")
-_VTK = Format("VTK", "vtk", parts="vtk_parts")
-_GMSH = Format("Gmsh", "gmsh")
-_NASTRAN = Format("Nastran, OptiStruct", "nastran")
+_OBJ = Format("OBJ", "obj.reader", parts="obj.parts")
+_PLY = Format("PLY", "ply.reader")
+_OFF = Format("OFF", "off.reader")
+_GLTF = Format("glTF", "gltf.reader", parts="gltf.reader")
+_VTK = Format("VTK", "vtk.reader", parts="vtk.parts")
+_GMSH = Format("Gmsh", "gmsh.reader")
+_NASTRAN = Format("Nastran, OptiStruct", "nastran.reader")
 _MEDIT = Format("Medit", "medit")
-_TECPLOT = Format("Tecplot", "tecplot")
+_TECPLOT = Format("Tecplot", "tecplot.reader")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
 FORMATS = {
@@ -56,13 +61,13 @@ FORMATS = {
     ".nas": _NASTRAN,
     ".mesh": _MEDIT,
     ".meshb": _MEDIT,
-    ".vol": Format("Netgen", "cells", "netgen"),
+    ".vol": Format("Netgen", "through_meshio.reader", "netgen"),
     ".su2": Format("SU2", "su2"),
     ".dat": _TECPLOT,
     ".tec": _TECPLOT,
     ".plt": _TECPLOT,
-    ".f3grid": Format("FLAC3D", "cells", "flac3d"),
-    ".xml": Format("DOLFIN XML", "cells", "dolfin"),
+    ".f3grid": Format("FLAC3D", "through_meshio.reader", "flac3d"),
+    ".xml": Format("DOLFIN XML", "through_meshio.reader", "dolfin"),
 }
 
 

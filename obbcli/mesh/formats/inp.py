@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.mesh.formats.abaqus import read_abaqus
+from obbcli.mesh.formats.abaqus.reader import read_abaqus
 from obbcli.mesh.formats.ucd import begins_as_ucd, read_ucd
 
 if TYPE_CHECKING:

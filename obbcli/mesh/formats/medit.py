@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from obbcli.mesh.formats.cell_surface import Block, surface
+from obbcli.mesh.formats.cells.surface import Block, surface
 from obbcli.mesh.formats.text import shown
 
 if TYPE_CHECKING:

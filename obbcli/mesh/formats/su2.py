@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from obbcli.mesh.formats.cell_parts import CellPart, joined_surface
-from obbcli.mesh.formats.cell_surface import Block
+from obbcli.mesh.formats.cells.parts import CellPart, joined_surface
+from obbcli.mesh.formats.cells.surface import Block
 from obbcli.mesh.formats.number_rows import blank_rows, whole_numbers
 from obbcli.mesh.formats.text import shown, strip_mark, whole
 

@@ -1,0 +1,1 @@
+"""Cells of finite elements: their faces, their surface, their parts."""

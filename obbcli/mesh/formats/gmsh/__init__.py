@@ -1,0 +1,1 @@
+"""Gmsh files of versions 2 and 4."""

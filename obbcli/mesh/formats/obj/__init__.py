@@ -1,0 +1,1 @@
+"""OBJ: statements, parts and foreign lines."""

@@ -1,0 +1,1 @@
+"""OFF as Geomview defines it and as ModelNet writes it."""

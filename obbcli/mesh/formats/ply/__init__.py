@@ -1,0 +1,1 @@
+"""PLY: header, body and strips."""

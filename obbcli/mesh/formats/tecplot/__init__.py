@@ -1,0 +1,1 @@
+"""Tecplot's ASCII files, zone by zone."""

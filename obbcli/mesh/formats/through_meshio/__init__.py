@@ -1,0 +1,1 @@
+"""Formats that meshio reads, behind a guard that counts what it takes."""

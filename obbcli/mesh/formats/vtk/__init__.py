@@ -1,0 +1,1 @@
+"""The VTK family, through VTK itself behind guards."""
