@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import click
 
 from obbcli.cli.boundary import stdout, writing_stdout
-from obbcli.cli.options.words import Finite, PathName
+from obbcli.cli.options.words import Finite, PathName, spelt_out
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     Decorator: TypeAlias = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -41,7 +41,10 @@ class GroupedOption(click.Option):
 
 
 class GuardedHelp(click.Command):
-    """Prints help and version, which happens while parsing, inside the guard of standard output."""
+    """Prints help and version, which happens while parsing, inside the guard of standard output.
+
+    A command line that cannot be parsed is told with the command's own help.
+    """
 
     def make_context(self, *args: Any, **extra: Any) -> click.Context:
         """Parse; a pipe closed while help was printed ends the command.
@@ -57,9 +60,27 @@ class GuardedHelp(click.Command):
                 raise
         raise click.exceptions.Exit(0)
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the words of a command line.
+
+        Raises:
+            UsageError: they cannot be parsed; it knows the command, which click's parser leaves out
+                where words are missing.
+        """
+        try:
+            return super().parse_args(ctx, args)
+        except click.UsageError as fault:
+            fault.ctx = fault.ctx or ctx
+            raise
+
 
 class Command(GuardedHelp):
-    """A command whose help lists options by group."""
+    """A command whose help lists options by group; three numbers may be one word."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the words of a command line, `--vel 1,0,0` as `--vel 1 0 0`."""
+        vectors = {name: param for param in self.params if _is_vector(param) for name in param.opts}
+        return super().parse_args(ctx, list(_with_vectors(ctx, vectors, args)))
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, one section a group, in the order of their first options."""
@@ -72,6 +93,49 @@ class Command(GuardedHelp):
         for group, records in groups.items():
             with formatter.section(group):
                 formatter.write_dl(records)
+
+
+_COORDINATES = 3
+
+
+def _is_vector(param: click.Parameter) -> bool:
+    """Return whether an option takes three numbers."""
+    is_option = isinstance(param, click.Option)
+    return is_option and param.nargs == _COORDINATES and isinstance(param.type, Finite)
+
+
+def _with_vectors(
+    ctx: click.Context, vectors: Mapping[str, click.Parameter], args: Sequence[str]
+) -> Iterator[str]:
+    """Yield the words of a command line, each vector that is one word as three.
+
+    Raises:
+        BadParameter: such a word does not hold exactly three numbers.
+    """
+    words = iter(args)
+    for word in words:
+        name, equals, value = word.partition("=")
+        if word == "--":  # what follows names files
+            yield from (word, *words)
+        elif name in vectors:
+            first = value if equals else next(words, None)
+            yield name
+            if first is not None:  # else click says how many numbers are missing
+                yield from _numbers(ctx, vectors[name], first)
+        else:
+            yield word
+
+
+def _numbers(ctx: click.Context, param: click.Parameter, first: str) -> list[str]:
+    """Return the words that the first word after a vector's name stands for: one, or all three."""
+    numbers = spelt_out(first)
+    if len(numbers) == _COORDINATES and all(numbers):
+        return numbers
+    if len(numbers) > 1 and not ctx.resilient_parsing:
+        name = param.opts[0]
+        fault = f"{first!r} is not three numbers; write {name} X Y Z or {name} X,Y,Z"
+        raise click.BadParameter(fault, ctx, param)
+    return [first]
 
 
 def option(group: str, *names: str, **attributes: Any) -> Decorator:

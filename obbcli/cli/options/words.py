@@ -25,6 +25,18 @@ def byte_count(context: click.Context, param: click.Parameter, text: str | None)
     return int(digits) * _UNITS[unit]
 
 
+def spelt_out(word: str) -> list[str]:
+    """Return the words that one word of several stands for: `1,0,0` or `"1 0 0"`.
+
+    Commas part numbers, or spaces do. A word of both, such as `"1,5 0 0"`, is parted at its commas
+    alone, so that the comma of a decimal fraction never makes two numbers.
+
+    Args:
+        word: as it was typed; what holds no comma and no space is one word already.
+    """
+    return [part.strip() for part in word.split(",")] if "," in word else word.split()
+
+
 class Finite(click.types.FloatParamType):
     """A finite number, at least `minimum` where one is given."""
 
