@@ -9,6 +9,7 @@ import pytest
 from mesh_files.cube_files import as_input, cube, obj
 
 from obbcli import Accuracy, __version__
+from obbcli.report.distance import distance_bare
 
 KEYS = ["schema", "tool_version", "inputs", "motion", "accuracy", "result", "stats"]
 RESULT = ["distance", "bounds", "point_a", "point_b", "triangle_a", "triangle_b", "complete"]
@@ -78,6 +79,29 @@ def test_distance_quiet_answers_in_one_number(here, obbtree):
 
     assert float(out) == pytest.approx(1.0, rel=1e-15)
     assert out.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("shift", "line"),
+    [((3, 0, 0), "3.0\n"), ((3, 5, 0), "5.0\n"), ((0.5, 0, 0), "0.5\n"), ((0, 0, 0), "0.0\n")],
+)
+def test_distance_quiet_is_the_middle_of_its_bounds(here, obbtree, shift, line):
+    # Unit cubes that share a face before the shift; 5 is the hypotenuse over gaps of 3 and 4.
+    words = ("distance", "cube.stl", "touching.obj", "--translate-b", *shift)
+
+    low, high = obbtree(*words, "--json").json["result"]["bounds"]
+
+    assert obbtree(*words, "--quiet").out == line
+    assert low <= float(line) <= high
+
+
+@pytest.mark.parametrize(
+    ("bounds", "told"), [([1.0, 5.0], "5.0"), ([5.0, 7.0], "5.0"), ([4.0, 7.0], "5.5")]
+)
+def test_distance_quiet_is_a_bound_that_the_printed_points_have(bounds, told):
+    points = {"point_a": [1.0, 0.0, 2.0], "point_b": [1.0, 3.0, -2.0]}
+
+    assert distance_bare({"result": {"bounds": bounds, **points}}) == f"{told}\n"
 
 
 @pytest.mark.parametrize(
