@@ -59,10 +59,12 @@ class Lengths(NamedTuple):
     Attributes:
         unit: that they are scaled to; None: of no matter.
         scale: by which they are multiplied, whatever unit the file states; None: by none.
+        weld: the distance within which vertices become one, before they are scaled; None: none do.
     """
 
     unit: str | None
     scale: float | None
+    weld: float | None = None
 
 
 def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
@@ -169,25 +171,30 @@ def read_shape(
 
 
 def measured(shape: Mesh | ObbTree, lengths: Lengths | None, name: str) -> Mesh | ObbTree:
-    """Return a shape in the unit or by the scale that is asked for.
+    """Return a shape welded, then in the unit or by the scale that is asked for.
 
     Raises:
-        MeshError: a tree file is of another unit or would be scaled, which its boxes do not allow;
-            or a coordinate leaves the range of double.
+        MeshError: a tree file is of another unit, or would be scaled or welded, which its boxes do
+            not allow; a coordinate leaves the range of double; vertices cannot be welded.
     """
     from obbcli.mesh import Mesh
 
     if lengths is None:
         return shape
-    unit, scale = lengths
+    unit, scale, weld = lengths
     if isinstance(shape, Mesh):
         try:
+            if weld is not None:
+                shape = shape.welded(weld)
             if scale is not None:
                 return shape.scaled(scale, unit)
             return shape if unit is None else shape.in_unit(unit)
         except MeshError as fault:
             raise MeshError(name, f"{fault.where}: {fault.fault}", fault.remedy) from fault
     source = shape.source or "MESH"
+    if weld is not None:
+        remedy = f"build one: obbtree build {source} --weld {weld!r} -o FILE"
+        raise MeshError(name, "is a tree file, which is not welded", remedy)
     if scale is not None:
         remedy = f"build one: obbtree build {source} --scale {scale!r} -o FILE"
         raise MeshError(name, "is a tree file, which is not scaled", remedy)

@@ -21,12 +21,14 @@ class MeasuredFile(os.PathLike[str]):
         unit: that it is scaled to; None: of no matter.
         own: the unit that it is in, in place of what it states; None: what it states.
         scale: by which it is multiplied, in place of what it states; None: by none.
+        weld: within which distance vertices become one, before they are scaled; None: none do.
     """
 
     path: str
     unit: str | None = None
     own: str | None = None
     scale: float | None = None
+    weld: float | None = None
 
     def __fspath__(self) -> str:
         return self.path
@@ -38,8 +40,11 @@ class MeasuredFile(os.PathLike[str]):
         """Return the file's mesh as it is taken.
 
         Raises:
-            MeshError: a unit or scale is none, or a coordinate leaves the range of double.
+            MeshError: a unit or scale is none, a coordinate leaves the range of double, or
+                vertices cannot be welded.
         """
+        if self.weld is not None:
+            mesh = mesh.welded(self.weld)
         if self.scale is not None:
             return mesh.scaled(self.scale, self.unit)
         if self.own is not None:
@@ -47,7 +52,7 @@ class MeasuredFile(os.PathLike[str]):
         return mesh if self.unit is None else mesh.in_unit(self.unit)
 
     def check_tree(self, unit: str | None) -> None:
-        """Refuse a tree file that would have to be scaled, which its boxes do not allow.
+        """Refuse a tree file that would have to be scaled or welded: its boxes do not allow it.
 
         Args:
             unit: that the tree is in.
@@ -55,7 +60,9 @@ class MeasuredFile(os.PathLike[str]):
         Raises:
             MeshError: it would.
         """
-        remedy = "build a tree of the mesh with --unit or --scale"
+        remedy = "build a tree of the mesh with --unit, --scale or --weld"
+        if self.weld is not None:
+            raise MeshError(self.path, "is a tree file, which is not welded", remedy)
         if self.scale is not None:
             raise MeshError(self.path, "is a tree file, which is not scaled", remedy)
         own = self.own or unit

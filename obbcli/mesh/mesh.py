@@ -136,6 +136,20 @@ class Mesh:
         vertices, note = scaled(self.vertices, factor)
         return self._with(vertices, unit, note)
 
+    def welded(self, distance: float) -> Mesh:
+        """Return the mesh with vertices within `distance` at the place of the first of them.
+
+        Triangles keep their rows, also those that collapse; a note tells what moved, and how far.
+
+        Raises:
+            MeshError: the distance is no finite number above 0, or vertices that it joins by steps
+                are farther apart.
+        """
+        from obbcli.mesh.weld import note_of, welded
+
+        done = welded(self.vertices, self.triangles, distance)
+        return self._with(done.vertices, self.unit, note_of(done, distance))
+
     def _with(
         self, vertices: NDArray[np.float64], unit: str | None, note: str | None = None
     ) -> Mesh:

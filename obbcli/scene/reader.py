@@ -21,6 +21,7 @@ from obbcli.motion.body import Body
 from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
 from obbcli.scene.bodies import SceneBody, SceneParts, as_ignored
+from obbcli.scene.values import above_zero, finite_number, shown
 from obbcli.spelling import known_keys
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ T = TypeVar("T")
 _MOST_BYTES = 64 << 20
 _LONG_NUMBER = "a number has too many digits"
 _KEYS = ("duration", "accuracy", "unit", "body", "ignore")
-_BODY_KEYS = ("name", "mesh", "unit", "scale", "pose", "motion", "static", "group")
+_BODY_KEYS = ("name", "mesh", "unit", "scale", "weld", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
 _PATH_KEYS = ("times", "poses")
 _ACCURACY_KEYS = tuple(Accuracy().as_dict())
@@ -174,7 +175,7 @@ class _Reader:
         return SceneParts(
             bodies,
             self._named("", as_ignored, ignore, bodies),
-            None if duration is None else self._number(duration, self._at("duration"), least=0),
+            None if duration is None else finite_number(duration, self._at("duration"), least=0),
             self._named("accuracy.", Accuracy, **accuracy),
         )
 
@@ -208,22 +209,20 @@ class _Reader:
         )
 
     def _measured(self, mesh: str, table: dict[str, Any], key: str) -> MeasuredFile | str:
-        """Return a body's file, and the unit and scale that it is taken in."""
+        """Return a body's file, and how its coordinates are taken."""
         own = table.get("unit")
         if "unit" in table:
             self._named(f"{key}.", checked_unit, own)
-        scale = table.get("scale")
-        if "scale" in table:
-            where = self._at(f"{key}.scale")
-            scale = self._number(scale, where, least=0)
-            if scale == 0:
-                raise SceneError(where, "is 0", "use a number above 0")
-            if own is not None:
-                fault = "has unit and scale, of which the second takes the place of the first"
-                raise SceneError(self._at(key), fault, "keep one")
-        if self._unit is None and own is None and scale is None:
+        scale, weld = (
+            above_zero(table[name], self._at(f"{key}.{name}")) if name in table else None
+            for name in ("scale", "weld")
+        )
+        if scale is not None and own is not None:
+            fault = "has unit and scale, of which the second takes the place of the first"
+            raise SceneError(self._at(key), fault, "keep one")
+        if self._unit is None and own is None and scale is None and weld is None:
             return mesh
-        return MeasuredFile(mesh, self._unit, own, scale)
+        return MeasuredFile(mesh, self._unit, own, scale, weld)
 
     def _pose(self, table: Any, key: str) -> Pose:
         self._table(table, ("rotation", "translation"), self._at(key))
@@ -244,7 +243,7 @@ class _Reader:
         if not isinstance(times, list) or not isinstance(poses, list):
             raise SceneError(self._at(key), "times and poses are no lists", "list as many of both")
         numbers = [
-            self._number(time, self._at(f"{key}.times[{k}]")) for k, time in enumerate(times)
+            finite_number(time, self._at(f"{key}.times[{k}]")) for k, time in enumerate(times)
         ]
         made = [self._pose(pose, f"{key}.poses[{k}]") for k, pose in enumerate(poses)]
         return self._named(f"{key}.", Motion.through, numbers, made)
@@ -252,35 +251,21 @@ class _Reader:
     def _vector(self, value: Any, key: str) -> list[float]:
         where = self._at(key)
         if not isinstance(value, list) or len(value) != 3:
-            raise SceneError(where, f"is {_shown(value)}", "list three numbers")
-        return [self._number(number, f"{where}[{k}]") for k, number in enumerate(value)]
-
-    @staticmethod
-    def _number(value: Any, where: str, least: float | None = None) -> float:
-        """Return a finite number; JSON and TOML know others."""
-        wanted = "use a finite number" + ("" if least is None else f" of at least {least}")
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise SceneError(where, f"is {_shown(value)}", wanted)
-        try:
-            number = float(value)
-        except OverflowError as fault:
-            raise SceneError(where, "is beyond the largest double", wanted) from fault
-        if not abs(number) < float("inf") or (least is not None and number < least):
-            raise SceneError(where, f"is {number}", wanted)
-        return number
+            raise SceneError(where, f"is {shown(value)}", "list three numbers")
+        return [finite_number(number, f"{where}[{k}]") for k, number in enumerate(value)]
 
     def _tables(self, tree: dict[str, Any], key: str) -> list[dict[str, Any]]:
         """Return an array of tables."""
         tables = tree.get(key, [])
         if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-            raise SceneError(self._at(key), f"is {_shown(tables)}", f"write [[{key}]]")
+            raise SceneError(self._at(key), f"is {shown(tables)}", f"write [[{key}]]")
         return tables
 
     @staticmethod
     def _table(value: Any, keys: Iterable[str], where: str) -> None:
         """Refuse what is no table, and keys that are not known."""
         if not isinstance(value, dict):
-            raise SceneError(where, f"is {_shown(value)}", "write a table: { key = value }")
+            raise SceneError(where, f"is {shown(value)}", "write a table: { key = value }")
         known_keys(value, tuple(keys), where)
 
     def _at(self, key: str) -> str:
@@ -293,9 +278,3 @@ class _Reader:
         except ObbError as fault:
             where = self._at(f"{key}{fault.where}")
             raise SceneError(where, fault.fault, fault.remedy) from fault
-
-
-def _shown(value: Any) -> str:
-    """Return a value for an error, cut where it is long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -100,5 +100,7 @@ def _key(shape: Shape) -> Hashable:
     if not isinstance(shape, (str, os.PathLike)):
         return id(shape)
     file, pattern = file_and_pattern(os.fspath(shape))
-    measures = (shape.unit, shape.own, shape.scale) if isinstance(shape, MeasuredFile) else None
+    measures = None
+    if isinstance(shape, MeasuredFile):
+        measures = shape.unit, shape.own, shape.scale, shape.weld
     return os.path.realpath(file), pattern, measures

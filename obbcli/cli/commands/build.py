@@ -12,7 +12,7 @@ import click
 from obbcli.cli.boundary import UsageError, as_error, report, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
 from obbcli.cli.options.option import Command, common_options, gathered, option
-from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option
+from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option, weld_option
 from obbcli.cli.options.words import PathName, Whole, byte_count
 from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
@@ -42,6 +42,7 @@ class TreeOptions(NamedTuple):
     force: bool
     unit: str | None
     scale: float | None
+    weld: float | None
 
     @property
     def build(self) -> BuildOptions:
@@ -102,6 +103,7 @@ build_options = gathered(
         option(_TREE, "--force", is_flag=True, help="Replace tree files that exist."),
         unit_option,
         scale_option("--scale", "the mesh's"),
+        weld_option,
     ),
 )
 
@@ -209,6 +211,6 @@ def _mesh(name: str, how: TreeOptions) -> Mesh:
     shape, _ = read_shape(name, verify=True)
     if not isinstance(shape, Mesh):
         raise MeshError(name, "is a tree file already", "build from the mesh it was made of")
-    made = measured(shape, UnitOptions(how.unit, how.scale, None).of_a(), name)
+    made = measured(shape, UnitOptions(how.unit, how.scale, None, how.weld).of_a(), name)
     assert isinstance(made, Mesh)
     return made

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from obbcli.cli.boundary import UsageError
-from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
+from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
 from obbcli.cli.options.option import Command, common_options, option, verify_option
+from obbcli.cli.options.placement import UnitOptions, weld_option
 from obbcli.cli.options.words import PathName
 from obbcli.cli.output import emit
 from obbcli.errors import MeshError
@@ -34,9 +35,10 @@ Examples:
 @click.argument("file", metavar="FILE", type=PathName())
 @option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
 @option("Question", "--parts", is_flag=True, help="List the parts of a mesh file, placed.")
+@weld_option
 @verify_option
 @common_options()
-def command(file: str, check: bool, parts: bool, no_verify: bool, common: CommonOptions) -> int:
+def command(file: str, weld: float | None, common: CommonOptions, **flags: Any) -> int:
     """Show what FILE holds: a mesh, or a tree with the mesh inside it.
 
     Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
@@ -50,11 +52,17 @@ def command(file: str, check: bool, parts: bool, no_verify: bool, common: Common
     from obbcli.tree.tree import ObbTree
 
     keep_inputs(common.output, (file,))
-    if parts:
+    lengths = UnitOptions(None, None, None, weld).of_a()
+    check = flags["check"]
+    if flags["parts"]:
+        if lengths is not None:
+            fault = "welds one mesh, and --parts lists the parts as they are"
+            raise UsageError("--weld", fault, "leave out one of the two")
         return _parts(file, common, check=check)
     start = time.perf_counter()
     stamp = stamp_of(file_of(file))
-    shape, sha256 = read_shape(file, verify=not no_verify)
+    shape, sha256 = read_shape(file, verify=not flags["no_verify"])
+    shape = measured(shape, lengths, file)
     if check:
         (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
     sha256 = sha256 or file_sha256(file_of(file), stamp)

@@ -130,6 +130,7 @@ def _refuse_questions(asked: TwoBodyOptions, how: ViewOptions, *, solid: bool) -
     """Refuse what is asked about two bodies where there is one."""
     given = asked.pose._asdict() | asked.motion._asdict() | asked.accuracy._asdict()
     given |= {"solid": solid, "exit_code": asked.exit_code, "ghosts": how.ghosts}
+    given |= {"scale_b": asked.units.scale_b}
     for name, value in given.items():
         if value not in (None, False):
             fault = "is about two bodies, and there is no B"
@@ -143,6 +144,7 @@ def _draw_boxes(asked: TwoBodyOptions, how: ViewOptions, target: Path) -> Record
     common = asked.common
     file = read(
         asked.a,
+        asked.units.of_a(),
         verify=not asked.no_verify,
         hashed=common.json,
         progress=common.shows_progress,

@@ -63,11 +63,12 @@ pose_options = gathered(
 
 
 class UnitOptions(NamedTuple):
-    """In which unit of length A and B are taken, and by what they are scaled."""
+    """In which unit of length A and B are taken, by what they are scaled, how they are welded."""
 
     unit: str | None
     scale: float | None
     scale_b: float | None
+    weld: float | None
 
     def of_a(self) -> Lengths | None:
         """Return what becomes of A's coordinates; None where they are taken as they are."""
@@ -80,7 +81,10 @@ class UnitOptions(NamedTuple):
     def _lengths(self, scale: float | None, name: str) -> Lengths | None:
         if scale is not None and not scale > 0:
             raise UsageError(name, f"is {scale!r}", "use a number above 0")
-        return None if self.unit is None and scale is None else Lengths(self.unit, scale)
+        if self.weld is not None and not self.weld > 0:
+            raise UsageError("--weld", f"is {self.weld!r}", "use a number above 0")
+        found = Lengths(self.unit, scale, self.weld)
+        return None if found == (None, None, None) else found
 
 
 _UNITS = "Units"
@@ -100,10 +104,19 @@ def scale_option(name: str, what: str) -> Decorator:
     return option(_UNITS, name, type=Finite(), metavar="F", help=text)
 
 
+weld_option = option(
+    _UNITS,
+    "--weld",
+    type=Finite(),
+    metavar="D",
+    help="Make vertices within D of each other one, in the file's unit, before scaling "
+    "[default: weld nothing].",
+)
+
 unit_options = gathered(
     "units",
     UnitOptions,
-    (unit_option, scale_option("--scale", "A's"), scale_option("--scale-b", "B's")),
+    (unit_option, scale_option("--scale", "A's"), scale_option("--scale-b", "B's"), weld_option),
 )
 
 
