@@ -135,6 +135,22 @@ def motion_part(bodies: tuple[Body, Body], duration: float) -> Record:
     return {"duration": duration, "a": body_part(a), "b": body_part(b)}
 
 
+def shown_motion(bodies: tuple[Body, Body], duration: float, *, in_document: bool) -> Record:
+    """Return what a record says of the motion, in a document or for a table.
+
+    A table shows the pivots of the bodies that turn. Those of others, which documents tell, would
+    cost a pass over their surfaces.
+    """
+    if in_document:
+        return motion_part(bodies, duration)
+    told = {
+        name: body_part(body)
+        for name, body in zip("ab", bodies, strict=True)
+        if body.motion.is_turning and not body.motion.places_mesh
+    }
+    return {"duration": duration, **told}
+
+
 def body_part(body: Body) -> Record:
     """Return pose and motion as understood; the shape is a tree or a mesh."""
     from obbcli.motion.body import pivot_of

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from obbcli.mesh.measure import diagonal
 from obbcli.report.record import note_rows
-from obbcli.report.table import count, length, seconds
+from obbcli.report.table import count, length, point, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,13 +16,25 @@ if TYPE_CHECKING:
 
 
 def source_rows(record: Record) -> list[tuple[str, str]]:
-    """Return the rows that name A and B, and those that say what of them was changed."""
+    """Return the rows that name A and B, that say what of them was changed, and where they turn."""
     sources = [(name.upper(), source) for name, source in record["inputs"].items()]
     rows = [
         (name, f"{source['path']} ({count(source['triangle_count'])} triangles)")
         for name, source in sources
     ]
-    return [*rows, *note_rows(sources)]
+    return [*rows, *note_rows(sources), *_pivot_rows(record.get("motion", {}))]
+
+
+def _pivot_rows(motion: Record) -> list[tuple[str, str]]:
+    """Return the rows that say where the axes of A and B pass at t = 0, of those that turn."""
+    if not motion.get("duration"):
+        return []
+    bodies = [(name, motion[name.lower()]) for name in "AB" if name.lower() in motion]
+    return [
+        (f"pivot of {name}", point(body["pivot"]))
+        for name, body in bodies
+        if any(body.get("angular_velocity", ()))
+    ]
 
 
 def part_rows(result: Record) -> list[tuple[str, str]]:

@@ -50,6 +50,32 @@ def test_collide_document_holds_the_motion_as_understood(here, obbtree):
     assert motion["b"]["linear_velocity"] == [1.0, 2.0, 3.0]
 
 
+# The cubes are [0, 1]^3 and, but for a hair, [1, 2] x [0, 1]^2: their centroids are their middles.
+@pytest.mark.parametrize(
+    ("words", "pivots"),
+    [
+        (("--omega", 0, 0, 1), {"A": "0.5 0.5 0.5"}),
+        (("--omega", 0, 0, 1, "--translate", 0, 0, 7), {"A": "0.5 0.5 7.5"}),
+        (("--omega", 0, 0, 1, "--pivot", 0, 0, 0), {"A": "0 0 0"}),
+        (("--omega-b", 0, 0, 1, "--vel", 0, 1, 0), {"B": "1.5 0.5 0.5"}),
+        (
+            ("--omega", 0, 1, 0, "--omega-b", 0, 0, 1, "--pivot-b", 4, 5, 6),
+            {"A": "0.5 0.5 0.5", "B": "4 5 6"},
+        ),
+        (("--vel", 0, 1, 0), {}),
+        (("--rotate", 0, 0, 1), {}),
+        (("--omega", 0, 0, 0), {}),
+        (("--omega", 0, 0, 1, "--duration", 0), {}),
+    ],
+)
+@pytest.mark.parametrize("command", ["collide", "first-contact", "stability"])
+def test_table_tells_about_which_point_a_body_turns(here, obbtree, command, words, pivots):
+    lines = obbtree(command, "cube.stl", "apart.obj", *words).out.splitlines()
+
+    told = [line.removeprefix("pivot of ") for line in lines if line.startswith("pivot")]
+    assert {line[0]: line[1:].strip() for line in told} == pivots
+
+
 def test_collide_of_moving_bodies_counts_the_time_of_reading(here, obbtree):
     stats = obbtree("collide", "cube.stl", "apart.obj", "--vel", 1, 0, 0, "--json").json["stats"]
 

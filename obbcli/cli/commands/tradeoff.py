@@ -244,11 +244,11 @@ def _record(
     *,
     is_interrupted: bool,
 ) -> Record:
-    from obbcli.report.record import Setting, motion_part
+    from obbcli.report.record import Setting, shown_motion
     from obbcli.report.tradeoff import Limits, tradeoff_record
 
     found = study.result()
-    motion = motion_part(study.bodies, study.duration) if asked.common.json else {}
+    motion = shown_motion(study.bodies, study.duration, in_document=asked.common.json)
     setting = Setting(sources, motion, found.reference_accuracy)
     wanted = asked.wanted
     limits = Limits(wanted.max_error, wanted.max_gap, wanted.max_time)

@@ -88,15 +88,15 @@ class TwoBodyOptions(NamedTuple):
         self, files: tuple[Input, Input], pair: PairQuestion, solid: bool | None = None
     ) -> Setting:
         """Return what a record says of the question."""
-        from obbcli.report.record import Setting, motion_part
+        from obbcli.report.record import Setting, shown_motion
         from obbcli.report.rows import about_units
 
-        # Hashes and centroids cost time, and only a document shows them.
+        # Hashes cost time, and only a document shows them.
         is_shown = self.common.json
         sources = [file.source(with_sha256=is_shown) for file in files]
         if not self.common.quiet:
             sources = about_units(sources, pair.trees)
-        motion = motion_part(pair.bodies, pair.duration) if is_shown else {}
+        motion = shown_motion(pair.bodies, pair.duration, in_document=is_shown)
         return Setting(sources, motion, pair.accuracy, solid)
 
 
