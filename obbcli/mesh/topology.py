@@ -78,6 +78,18 @@ def is_watertight(corners: NDArray[np.int64]) -> bool:
     return bool(np.array_equal(forward, np.sort(end * count + start)))
 
 
+def open_positions(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the ends of all edges that are not run through once in either direction, sorted."""
+    a, b, c = corners.T
+    whole = corners[(a != b) & (b != c) & (c != a)]
+    start, end = whole.reshape(-1), whole[:, [1, 2, 0]].reshape(-1)
+    count = int(corners.max()) + 1
+    forward, runs = np.unique(start * count + end, return_counts=True)
+    there_and_back = np.isin(forward // count + forward % count * count, forward[runs == 1])
+    bad = forward[(runs != 1) | ~there_and_back]
+    return np.unique(np.concatenate([bad // count, bad % count]))
+
+
 class Seam(NamedTuple):
     """An edge at which a surface does not close.
 

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from obbcli.motion.body import Body
     from obbcli.questions.pair_question import Trees
 
+# How the notes of scaled meshes begin.
+_SCALED = "coordinates "
+
 
 class Containment:
     """The question whether a part of one body lies inside the other, their surfaces apart at t = 0.
@@ -132,11 +135,20 @@ def _require_watertight(mesh: Mesh, where: str) -> None:
             f"{edges} not join two triangles turned alike, such as that from {start} to {end} "
             f"of triangle {seam.triangle}, {_why(seam.along, seam.against)}"
         )
-    raise MeshError(
-        where,
-        f"is not watertight: {fault}",
-        "mend the mesh, or ask about surfaces, without solid",
-    )
+    raise MeshError(where, f"is not watertight: {fault}", _remedy(mesh))
+
+
+def _remedy(mesh: Mesh) -> str:
+    from obbcli.mesh.closing import closing_distance
+
+    distance = closing_distance(mesh)
+    if distance is None:
+        return "mend the mesh, or ask about surfaces, without solid"
+    if any(note.startswith(_SCALED) or ": coordinates" in note for note in mesh.notes):
+        welding = f"before it is scaled: vertices within {distance!r} as scaled"
+    else:
+        welding = f"with --weld {distance!r}, or Mesh.welded"
+    return f"weld it {welding}, which closes it; or ask about surfaces, without solid"
 
 
 def _why(along: int, against: int) -> str:
