@@ -54,7 +54,7 @@ class Containment:
         self, bodies: tuple[Body, Body], trees: Trees, at_start: kernels.StaticQuery
     ) -> None:
         for name, tree in zip("AB", trees, strict=True):
-            _require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
+            require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
         self._bodies = bodies
         self._trees = trees
         self._at_start = at_start
@@ -120,7 +120,12 @@ class Containment:
         return points, kernels.ContainmentQuery(other.kernel, outer.pose.kernel, points)
 
 
-def _require_watertight(mesh: Mesh, where: str) -> None:
+def require_watertight(mesh: Mesh, where: str) -> None:
+    """Refuse a mesh that is no solid.
+
+    Raises:
+        MeshError: it is not watertight; the message says where, and which welding closes it.
+    """
     if mesh.is_watertight:
         return
     found = bad_seams(mesh.corner_ids)

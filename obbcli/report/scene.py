@@ -86,6 +86,8 @@ def scene_record(
         bodies=_bodies_part(asked, places, with_motion=with_motion),
         ignore=[dict(entry) for entry in ignore],
         accuracy=asked.accuracy.as_dict(),
+        # What is not asked for is no key, so that documents without it are as they were.
+        **({"solid": True} if asked.solid else {}),
         result=result,
         stats=stats,
     )
@@ -229,7 +231,7 @@ def _contacts_table(result: Record) -> Table:
             contact["body_b"],
             repr(contact["time"]),
             *_triangles(contact),
-            contact["feature"] or "",
+            _inside(contact) or contact["feature"] or "",
             "" if contact["point"] is None else point(contact["point"]),
         )
         for contact in result["contacts"]
@@ -237,6 +239,12 @@ def _contacts_table(result: Record) -> Table:
     more = "" if result["contacts_complete"] else "; there may be more"
     title = f"contacts: {count(len(rows))}, earliest first{more}"
     return Table(rows, _COLUMNS, title, name_count=2)
+
+
+def _inside(contact: Record) -> str | None:
+    """Return which body is inside the other, or a part of it; None where surfaces meet."""
+    inner = contact["contained"]
+    return None if inner is None else f"{inner.upper()} inside {'B' if inner == 'a' else 'A'}"
 
 
 def _triangles(contact: Record) -> tuple[str, str]:

@@ -116,7 +116,11 @@ class FirstContacts(ContactStream):
         try:
             if query is None:
                 query = Query(
-                    *self.asked.bodies_of(item.a, item.b), self.asked.duration, self._accuracy
+                    *self.asked.bodies_of(item.a, item.b),
+                    self.asked.duration,
+                    self._accuracy,
+                    # Bodies whose boxes are apart at t = 0 do not hold each other then.
+                    solid=self.asked.solid and item.time == 0.0,
                 )
             before = query.counts
             found = self._advance(query)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from obbcli.questions.pair_question import check_units
 from obbcli.scene.candidates import Ignored, asked_pairs, find_candidates
 from obbcli.scene.results import SceneContact, SceneStats
+from obbcli.tree.tree import ObbTree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -27,6 +28,7 @@ class ScenePairs:
         scene: what the scene consists of; its duration is resolved.
         shapes: its meshes and trees.
         pairs: the bodies asked about, by name; None: all pairs.
+        solid: whether a body inside another at t = 0 is in contact with it.
 
     Attributes:
         bodies: those that pairs are of, in the order of the scene.
@@ -34,20 +36,27 @@ class ScenePairs:
         duration: s.
         accuracy: of each answer.
         candidates: the pairs that may meet.
+        solid: as above.
 
     Raises:
         SceneError: a pair is none, or names what is not there.
-        MeshError: a mesh cannot be read or is refused.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
 
     def __init__(
-        self, scene: SceneParts, shapes: Shapes, pairs: Iterable[tuple[str, str]] | None
+        self,
+        scene: SceneParts,
+        shapes: Shapes,
+        pairs: Iterable[tuple[str, str]] | None,
+        *,
+        solid: bool = False,
     ) -> None:
         assert scene.duration is not None
         self.duration = scene.duration
         self.accuracy = scene.accuracy
+        self.solid = solid
         self._all = scene.bodies
         self._places_by_name = {body.name: place for place, body in enumerate(scene.bodies)}
         self._shapes = shapes
@@ -66,6 +75,9 @@ class ScenePairs:
         with self.timed("bounds"):
             found = find_candidates(bodies, loaded, places, ignored, self.duration, scene.accuracy)
         self.candidates = found if wanted is None else _only(found, wanted)
+        if solid:
+            with self.timed("load"):
+                self._require_watertight()
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
@@ -75,6 +87,17 @@ class ScenePairs:
             yield
         finally:
             self._seconds[stage] += time.perf_counter() - start
+
+    def _require_watertight(self) -> None:
+        """Refuse bodies that do not close, of pairs one of which may hold the other."""
+        from obbcli.questions.containment import require_watertight
+
+        pairs, times = self.candidates.pairs, self.candidates.times
+        for place in sorted(set(pairs[times == 0.0].ravel().tolist())):
+            tree = self._body(place).shape
+            assert isinstance(tree, ObbTree)
+            name = f"body {self._all[place].name!r}"
+            require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
 
     def bodies_of(self, a: int, b: int) -> tuple[Body, Body]:
         """Return two bodies, given by their places in the scene, on their trees."""

@@ -103,7 +103,10 @@ class Scene:
         return cls(parts.bodies, parts.ignore, parts.duration, parts.accuracy, verify=verify)
 
     def first_contacts(
-        self, first: bool = False, pairs: Iterable[tuple[str, str]] | None = None
+        self,
+        first: bool = False,
+        pairs: Iterable[tuple[str, str]] | None = None,
+        solid: bool = False,
     ) -> FirstContacts:
         """Return the first contact of every pair that touches, in order of time.
 
@@ -115,17 +118,22 @@ class Scene:
                 than that.
             pairs: the pairs asked about, by the names of their bodies; only their files are read.
                 None: all.
+            solid: whether a body inside another at t = 0 is contact too, without touching, as of
+                `first_contact`. Bodies that may be inside another or hold one have to be
+                watertight; of those whose boxes are apart at t = 0 that is not asked.
 
         Returns:
             an iterator of `SceneContact` that also has `stats`.
 
         Raises:
             SceneError: a pair is none, or names what is not there, or what the scene ignores.
-            MeshError: a mesh cannot be read or is refused.
+            MeshError: a mesh cannot be read or is refused, as one that is not watertight if
+                `solid`.
             TreeFileError: a tree file is damaged.
             OSError: a file cannot be read.
         """
-        return FirstContacts(ScenePairs(self._parts, self._shapes, pairs), first=first)
+        asked = ScenePairs(self._parts, self._shapes, pairs, solid=solid)
+        return FirstContacts(asked, first=first)
 
     def contacts(
         self, limit: int | None = None, pairs: Iterable[tuple[str, str]] | None = None

@@ -90,12 +90,12 @@ def asked(scene: Scene) -> list[tuple[int, int]]:
     return found
 
 
-def one_by_one(scene: Scene) -> list[tuple[object, ...]]:
+def one_by_one(scene: Scene, *, solid: bool = False) -> list[tuple[object, ...]]:
     """Return all that touches or is unresolved, in order, pair by pair; see `plain`."""
     answers = []
     for i, j in asked(scene):
         a, b = scene.bodies[i], scene.bodies[j]
-        found = first_contact(a.body, b.body, scene.duration, scene.accuracy)
+        found = first_contact(a.body, b.body, scene.duration, scene.accuracy, solid)
         if found.status is not Status.SEPARATED:
             answers.append((found.time, i, j, plain(a.name, b.name, found)))
     return [answer[3] for answer in sorted(answers, key=lambda answer: answer[:3])]

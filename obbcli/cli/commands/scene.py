@@ -40,6 +40,7 @@ class _Wanted(NamedTuple):
     first: bool
     all_contacts: bool
     limit: int | None
+    solid: bool
 
 
 @click.command(
@@ -72,6 +73,7 @@ Examples:
     metavar="N",
     help="List the first N contacts [default: all].",
 )
+@option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
 @option(
     QUESTION,
@@ -118,6 +120,9 @@ def _refuse_contradictions(wanted: _Wanted) -> None:
             if getattr(wanted, name):
                 fault = "lists contacts, and --first asks for one"
                 raise UsageError(f"--{name.replace('_', '-')}", fault, "leave out one of the two")
+    if wanted.solid and wanted.all_contacts:
+        fault = "lists triangles that meet, and a body inside another has none"
+        raise UsageError("--all-contacts", fault, "leave out it or --solid")
 
 
 def _read(
@@ -171,7 +176,7 @@ def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
     try:
         if wanted.all_contacts:
             return scene.contacts(wanted.limit, pairs)
-        return scene.first_contacts(wanted.first, pairs)
+        return scene.first_contacts(wanted.first, pairs, wanted.solid)
     except SceneError as fault:
         # What is typed is usage.
         raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault

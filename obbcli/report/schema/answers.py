@@ -97,16 +97,19 @@ def scene() -> Schema:
     inputs = record(
         {"scene": ref("source"), "meshes": told(list_of(ref("source")), "of the bodies, each once")}
     )
-    return document(
+    schema = document(
         "scene",
         inputs,
         duration=told(AMOUNT, "s"),
         bodies=list_of({"oneOf": [_body(RIGID_FIELDS), _body(PATH_FIELDS)]}),
         ignore=list_of(_IGNORE),
         accuracy=ref("accuracy"),
+        solid=told(FLAG, "whether a body inside another counts as contact; no key where not"),
         result=_scene_result(),
         stats=_scene_stats(),
     )
+    schema["required"].remove("solid")
+    return schema
 
 
 _IGNORE = {
