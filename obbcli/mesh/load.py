@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.errors import MeshError
 from obbcli.files import file_and_pattern
-from obbcli.mesh.formats import FORMATS, known_suffixes
-from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning
+from obbcli.mesh.formats import FORMATS, known_suffixes, suffix_of
+from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning, is_packed
 from obbcli.mesh.mesh import Mesh, PartRows
 from obbcli.mesh.source import (
     Source,
@@ -50,7 +50,8 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     of n corners become n - 2 rows, cells the faces that `cell_surface.surface` lists.
 
     Args:
-        path: the file; or `"FILE#PATTERN"`, the parts of it whose paths match, placed and joined.
+        path: the file, which gzip may have packed where it is STL, OBJ or PLY; or `"FILE#PATTERN"`,
+            the parts of it whose paths match, placed and joined.
         hashed: whether the mesh's `sha256` is found, which for a large file costs as much time as
             to read it.
 
@@ -71,15 +72,41 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)
-    suffix = path.suffix.lower()
+    suffix = suffix_of(path.name)
     if suffix == ".stl" and not hashed and path.is_file():
         arrays = _read_binary_stl(path)
         if arrays is not None:
             return mesh_of(arrays, Source(str(path), path.name, b"", path), None)
+    return _load(_content(path, suffix), suffix, hashed=hashed)
+
+
+def _content(path: Path, suffix: str) -> Source:
+    """Return what a file holds, unpacked.
+
+    Raises:
+        MeshError: it cannot be read, or is no mesh by its beginning.
+    """
     if suffix not in FORMATS:
         # By its beginning alone: a file that is no mesh may be of any size.
-        _suffix_told(read_head(path, HEAD_BYTES), suffix)
-    return _load(read_source(path), suffix, hashed=hashed)
+        head = read_head(path, HEAD_BYTES)
+        if is_packed(head.data):
+            from obbcli.mesh.packed import unpacked_head
+
+            inside = unpacked_head(head)
+            if inside is not None:
+                _refuse_other(inside, suffix)
+        else:
+            _suffix_told(head, suffix)
+    return _plain(read_source(path))
+
+
+def _plain(source: Source) -> Source:
+    """Return a source, unpacked where it is packed."""
+    if not is_packed(source.data):
+        return source
+    from obbcli.mesh.packed import unpacked
+
+    return unpacked(source)
 
 
 def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool = True) -> Mesh:
@@ -114,10 +141,8 @@ def read_parts(path: str | os.PathLike[str], *, hashed: bool = True) -> FilePart
 
     path = Path(path)
     check_file(path)
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        _suffix_told(read_head(path, HEAD_BYTES), suffix)
-    source = read_source(path)
+    suffix = suffix_of(path.name)
+    source = _content(path, suffix)
     with _reading(source, suffix, hashed=hashed) as (told, digest):
         parts = listed_parts(_parts_reader(told)(source), source.place)
     return FileParts(source, parts, None if digest is None else digest())
@@ -134,7 +159,7 @@ def load_mesh_bytes(
     Raises:
         MeshError: as in `load_mesh`; `name` is the place named.
     """
-    source = checked_source(Source(name, name, bytes(data)))
+    source = _plain(checked_source(Source(name, name, bytes(data))))
     if suffix is None:
         found = beginning(source.data)
         suffix = found.suffix if found else None
@@ -211,7 +236,13 @@ def _reading(
 ) -> Iterator[tuple[str, Callable[[], str] | None]]:
     """Yield a file's suffix as its content tells it, and what waits for its hash."""
     told = _suffix_told(source, suffix)
-    digest = digest_of(source.data) if hashed else None
+    stored = source.data
+    if source.stored is not None:
+        from obbcli.mesh.packed import refuse_other_formats
+
+        refuse_other_formats(source, told)
+        stored = source.stored
+    digest = digest_of(stored) if hashed else None
     try:
         yield told, digest
     except MeshError as fault:

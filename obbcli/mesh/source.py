@@ -38,6 +38,7 @@ class Source:
         path: where it lies, or None where the bytes came from a stream.
         notes: what readers said of it so far; they become `Mesh.notes`.
         units: the length unit that the file or its format states, as `Mesh.unit`; empty or one.
+        stored: the bytes as they lie in the file, where `data` was unpacked from them, else None.
     """
 
     place: str
@@ -46,6 +47,7 @@ class Source:
     path: Path | None = None
     notes: list[str] = field(default_factory=list)
     units: list[str] = field(default_factory=list)
+    stored: bytes | None = None
 
     @property
     def unit(self) -> str | None:
@@ -119,6 +121,11 @@ def _drained(pipe: Path) -> bytes:
         return read_stream(stream, str(pipe))
 
 
+def most_bytes() -> int:
+    """Return how much of this machine's memory an input of unknown size may fill."""
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // _SHARE
+
+
 def read_stream(stream: BinaryIO, place: str) -> bytes:
     """Return all that a pipe or standard input brings.
 
@@ -130,7 +137,7 @@ def read_stream(stream: BinaryIO, place: str) -> bytes:
         MeshError: it brings more than a quarter of this machine's memory; some never end.
         OSError: it cannot be read.
     """
-    most = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // _SHARE
+    most = most_bytes()
     parts = []
     while part := stream.read(_CHUNK):
         parts.append(part)

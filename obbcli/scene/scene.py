@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import SceneError
 from obbcli.files import file_of
 from obbcli.mesh import known_suffixes
+from obbcli.mesh.formats import suffix_of
 from obbcli.motion.assembly import load_parts
 from obbcli.questions.border import whole_limit
 from obbcli.questions.pair_question import duration_of
@@ -167,4 +167,4 @@ class Scene:
 
 def is_mesh_file(path: str | os.PathLike[str]) -> bool:
     """Return whether a name is that of a mesh file, which is a scene of its parts."""
-    return Path(file_of(path)).suffix.lower() in known_suffixes()
+    return suffix_of(file_of(path)) in known_suffixes()

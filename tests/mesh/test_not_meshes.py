@@ -63,7 +63,10 @@ OTHERS = {
     ),
     "not found": (b"404: Not Found", "is what a web server said"),
     "zip": (zipped(), "is a zip archive, not a mesh; unpack it and name the mesh inside"),
-    "gzip": (gzip.compress(OBJ), "is a gzip archive, not a mesh; unpack it"),
+    "gzip twice": (
+        gzip.compress(gzip.compress(OBJ)),
+        "is a gzip archive, not a mesh; unpack it",
+    ),
     "bzip2": (bz2.compress(OBJ), "is a bzip2 archive"),
     "xz": (lzma.compress(OBJ), "is an xz archive"),
     "tar": (tarred(), "is a tar archive"),

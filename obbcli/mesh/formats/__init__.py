@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import NamedTuple
 
 
@@ -69,6 +70,16 @@ FORMATS = {
     ".f3grid": Format("FLAC3D", "through_meshio.reader", "flac3d"),
     ".xml": Format("DOLFIN XML", "through_meshio.reader", "dolfin"),
 }
+
+
+#: What stands after the suffix of a file that gzip has packed.
+PACKED_SUFFIX = ".gz"
+
+
+def suffix_of(name: str) -> str:
+    """Return the suffix that tells a file's format, in lower case; it may stand before `.gz`."""
+    path = PurePath(name.lower())
+    return PurePath(path.stem).suffix if path.suffix == PACKED_SUFFIX else path.suffix
 
 
 def known_suffixes() -> tuple[str, ...]:

@@ -63,6 +63,11 @@ def beginning(data: bytes) -> Beginning | None:
     return Beginning(".bdf", "a Nastran deck") if re.search(_DECK, head) else None
 
 
+def is_packed(data: bytes) -> bool:
+    """Return whether the bytes are those of a gzip file, which may hold a mesh."""
+    return data.startswith(b"\x1f\x8b") and not is_binary_stl(data)
+
+
 def _is_like_obj(head: bytes) -> bool:
     """Return whether the first line that says something begins as one of OBJ does."""
     for line in head.splitlines():
