@@ -42,14 +42,19 @@ _FORMATS: dict[object, tuple[str] | tuple[str, int]] = {
 }
 
 
-def _raw() -> np.dtype[np.void]:
+def _raw(*more: str) -> np.dtype[np.void]:
     columns, size = kernels.sweep_columns()
-    names, formats, offsets = zip(*columns, strict=True)
+    names, formats, offsets = map(list, zip(*columns, strict=True))
+    for name in more:
+        names, formats, offsets = [*names, name], [*formats, "i8"], [*offsets, size]
+        size += 8
     return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
 
 
-RAW = _raw()
-"""`SweepAnswer` of the kernels: NaN and -1 for what does not apply, codes for words."""
+_TOLD_BY_KERNELS = _raw()
+RAW = _raw("contained")
+"""`SweepAnswer` of the kernels: NaN and -1 for what does not apply, codes for words. Behind it,
+which body is inside the other: kernels are asked about surfaces."""
 _TOLD = frozenset(RAW.names or ())
 
 
@@ -69,6 +74,15 @@ def _row() -> np.dtype[np.void]:
 
 ROW = _row()
 """A row of what `sweep` returns."""
+
+
+def of_kernels(found: object) -> Answers:
+    """Return what kernels answer as rows of `RAW`."""
+    told = np.array(found).view(_TOLD_BY_KERNELS).reshape(-1)
+    rows = np.zeros(len(told), RAW)
+    for name in _TOLD_BY_KERNELS.names or ():
+        rows[name] = told[name]
+    return rows
 
 
 def as_rows(raw: Answers) -> Answers:

@@ -13,7 +13,14 @@ from obbcli.questions.border import limits_of, out_of_range, refused
 from obbcli.questions.describe import contact_at_start
 from obbcli.questions.first_contact import first_contact
 from obbcli.questions.pair_question import time_tolerance
-from obbcli.sweeps.answer_rows import RAW, REFUSED, TRIANGLES_AT_START, write_answer, write_contact
+from obbcli.sweeps.answer_rows import (
+    RAW,
+    REFUSED,
+    TRIANGLES_AT_START,
+    of_kernels,
+    write_answer,
+    write_contact,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -83,13 +90,16 @@ def answer_batch(trees: Trees, batch: Batch, accuracy: Accuracy, threads: int) -
         )
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
-    answers: Answers = np.array(found).view(RAW).reshape(-1)
+    answers = of_kernels(found)
     _say_where_triangles_meet(trees, batch.poses, answers)
     return Outcome(answers, _refusals(trees, faults))
 
 
 def answer_one_by_one(
-    questions: Iterable[tuple[Body, Body, float | None]], accuracy: Accuracy
+    questions: Iterable[tuple[Body, Body, float | None]],
+    accuracy: Accuracy,
+    *,
+    solid: bool = False,
 ) -> Outcome:
     """Return the same of questions that the kernels answer in steps only: paths, and samples."""
     rows = []
@@ -97,7 +107,7 @@ def answer_one_by_one(
     for index, (a, b, duration) in enumerate(questions):
         row = np.zeros(1, RAW)
         try:
-            write_answer(row[0], first_contact(a, b, duration, accuracy))
+            write_answer(row[0], first_contact(a, b, duration, accuracy, solid))
         except MotionError as fault:
             row["status"] = REFUSED
             errors[index] = fault

@@ -54,9 +54,7 @@ def answer_rows(trees: Trees, rows: Sequence[Row], setting: SweepSetting, thread
             asked.append((index, question_of(row.values, setting, row.where)))
         except ObbError as refusal:
             results[index] = error_part(refusal)
-    outcome = answer_questions(
-        trees, [question for _, question in asked], setting.accuracy, threads
-    )
+    outcome = answer_questions(trees, [question for _, question in asked], setting, threads)
     for place, ((index, _), answer) in enumerate(
         zip(asked, as_results(outcome.answers), strict=True)
     ):

@@ -15,6 +15,7 @@ from obbcli.motion.pose import Pose
 from obbcli.motion.rotation import rotation_matrix
 from obbcli.sweeps.answer_rows import RAW
 from obbcli.sweeps.batch import Batch, Outcome, answer_batch, answer_one_by_one
+from obbcli.sweeps.solids import answer_solids
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,11 +34,13 @@ class SweepSetting(NamedTuple):
         defaults: what rows leave out, by the names of their fields.
         degrees: whether angles and spins are in degrees.
         accuracy: of every answer.
+        solid: whether a body inside the other at t = 0 is in contact with it.
     """
 
     defaults: Values
     degrees: bool
     accuracy: Accuracy
+    solid: bool = False
 
 
 class RowQuestion(NamedTuple):
@@ -111,24 +114,32 @@ def _posed(rotate: Vector | None, translate: Vector | None, degrees: bool) -> Po
 
 
 def answer_questions(
-    trees: Trees, questions: Sequence[RowQuestion], accuracy: Accuracy, threads: int
+    trees: Trees, questions: Sequence[RowQuestion], setting: SweepSetting, threads: int
 ) -> Outcome:
     """Return the answers of understood rows.
+
+    Args:
+        trees: of A and B.
+        questions: the rows.
+        setting: of the sweep.
+        threads: how many rows are asked about at the same time.
 
     Raises:
         TreeFileError: a tree file is damaged.
     """
+    accuracy, answer = setting.accuracy, answer_solids if setting.solid else answer_batch
     if accuracy.method == "sampled":
-        return answer_one_by_one((_bodies(trees, asked) for asked in questions), accuracy)
+        bodies = (_bodies(trees, asked) for asked in questions)
+        return answer_one_by_one(bodies, accuracy, solid=setting.solid)
     poses = [asked.poses for asked in questions]
     if not poses:
         return Outcome(np.empty(0, RAW), {})
     if all(pair[0] is poses[0][0] and pair[1] is poses[0][1] for pair in poses):
         try:
-            return answer_batch(trees, _batch(trees, questions, poses[:1]), accuracy, threads)
+            return answer(trees, _batch(trees, questions, poses[:1]), accuracy, threads)
         except MotionError:
             pass  # the shared placement is refused: row by row, each row gets its own error
-    return answer_batch(trees, _batch(trees, questions, poses), accuracy, threads)
+    return answer(trees, _batch(trees, questions, poses), accuracy, threads)
 
 
 def _batch(

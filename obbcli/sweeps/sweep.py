@@ -14,6 +14,7 @@ from obbcli.motion.motion import Motion
 from obbcli.questions.pair_question import duration_of, trees_of
 from obbcli.sweeps.answer_rows import RAW, as_rows
 from obbcli.sweeps.batch import Batch, Outcome, answer_batch, answer_one_by_one
+from obbcli.sweeps.solids import answer_solids, require_solids
 from obbcli.threads import thread_count
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def sweep(
     accuracy: Accuracy | None = None,
     *,
     threads: int | None = None,
+    solid: bool = False,
 ) -> Answers:
     """Return the first contact of one pair of bodies in each of many motions.
 
@@ -58,19 +60,21 @@ def sweep(
         durations: s, one for all or (N,). None: 1 where a body moves, else 0, as `first_contact`.
         accuracy: of every row; its limits too. None: the defaults.
         threads: how many rows are asked about at the same time. None: one a core.
+        solid: whether a body inside the other at t = 0 is contact too, as of `first_contact`. That
+            is asked once for all rows that start alike, outside their counters and limits.
 
     Returns:
         a structured array (N,) with the fields of `FirstContact`: `status`, `evidence` and
         `feature` its words (empty where none), `time` and its bounds `time_lo` and `time_hi` s,
-        `point`, `point_a`, `point_b`, `normal`, `normal_a`, `normal_b` (3,), `triangle_a`,
-        `triangle_b`, `distance`, `error_bound`, `approximate`, and the counters `box_tests`,
-        `triangle_tests`, `exact_triangle_tests`, `pops`. NaN, or -1 of triangles, where a field
-        does not apply.
+        `contained`, `point`, `point_a`, `point_b`, `normal`, `normal_a`, `normal_b` (3,),
+        `triangle_a`, `triangle_b`, `distance`, `error_bound`, `approximate`, and the counters
+        `box_tests`, `triangle_tests`, `exact_triangle_tests`, `pops`. NaN, or -1 of triangles,
+        where a field does not apply.
 
     Raises:
         MotionError: motions or durations are no numbers or of another shape, a body moves by itself
             and is given motions too, or positions leave the range of double; the row is named.
-        MeshError: a mesh cannot be read or is refused.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
 
@@ -87,7 +91,9 @@ def sweep(
     count = _row_count(columns, seconds)
     trees = trees_of(bodies)
     placed = tuple(Body(tree, body.pose) for tree, body in zip(trees, bodies, strict=True))
-    question = _SweepQuestion(trees, (placed[0], placed[1]), columns, seconds, count)
+    if solid:
+        require_solids(trees)
+    question = _SweepQuestion(trees, (placed[0], placed[1]), columns, seconds, count, solid)
     outcome = question.answer(accuracy, thread_count(threads))
     for row, fault in sorted(outcome.errors.items()):
         raise type(fault)(f"row {row}: {fault.where}", fault.fault, fault.remedy)
@@ -114,6 +120,7 @@ class _SweepQuestion(NamedTuple):
     columns: tuple[_Column, _Column]
     durations: Floats | None
     row_count: int
+    solid: bool
 
     def answer(self, accuracy: Accuracy, threads: int) -> Outcome:
         slow = sorted({row for column in self.columns for row in self._rows_of(column)})
@@ -125,8 +132,9 @@ class _SweepQuestion(NamedTuple):
         a, b = self.placed
         motions_a, motions_b = (self._numbers(side)[quick] for side in (0, 1))
         batch = Batch([(a.pose, b.pose)], motions_a, motions_b, self._seconds()[quick])
-        some = answer_batch(self.trees, batch, accuracy, threads)
-        others = answer_one_by_one(map(self._bodies, slow), accuracy)
+        answer_quick = answer_solids if self.solid else answer_batch
+        some = answer_quick(self.trees, batch, accuracy, threads)
+        others = answer_one_by_one(map(self._bodies, slow), accuracy, solid=self.solid)
         for rows, outcome in ((quick, some), (np.array(slow, np.intp), others)):
             answers[rows] = outcome.answers
             errors |= {int(rows[row]): fault for row, fault in outcome.errors.items()}

@@ -30,7 +30,7 @@ def test_fields_tell_what_they_hold_and_whether_they_may_be_none():
 def test_sweeps_have_a_column_for_each_field_that_is_asked_for():
     names = {field.name for field in fields_of(Contact)}
 
-    assert names - set(ROW.names) == {"time_bounds", "contained"}
+    assert names - set(ROW.names) == {"time_bounds"}
     assert {"time_lo", "time_hi"} <= set(ROW.names)
 
 

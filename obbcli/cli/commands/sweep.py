@@ -14,7 +14,7 @@ import click
 from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, writing
 from obbcli.cli.inputs import STDIN, keep_inputs, read_pair
 from obbcli.cli.options.option import Command, gathered, option
-from obbcli.cli.options.two_bodies import about_two
+from obbcli.cli.options.two_bodies import QUESTION, about_two
 from obbcli.cli.options.words import PathName, Whole
 from obbcli.cli.output import emit
 from obbcli.cli.progress import counting
@@ -46,6 +46,7 @@ class SweepOptions(NamedTuple):
     threads: int | None
     workers: int | None
     scheduler: str | None
+    solid: bool
 
 
 _SWEEP = "Sweep"
@@ -73,6 +74,7 @@ sweep_options = gathered(
         option(
             _SWEEP, "--scheduler", metavar="ADDRESS", help="Use the Dask cluster that is there."
         ),
+        option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too."),
     ),
 )
 
@@ -158,11 +160,15 @@ def _sweep(
     from obbcli.sweeps.results_file import opened_results
     from obbcli.sweeps.stream import started
 
-    setting = _setting(asked)
+    setting = _setting(asked, solid=how.solid)
     with ExitStack() as stack:
         queries = stack.enter_context(opened(name))
         rows = started(queries.rows())  # faulty columns are told before anything is written
         files = _read(asked)
+        if how.solid:
+            from obbcli.sweeps.solids import require_solids
+
+            require_solids((files[0].tree, files[1].tree))
         header = _header(asked, setting, files, queries)
         start = time.perf_counter()
         answer = stack.enter_context(_answerer(how, (files[0].tree, files[1].tree), setting))
@@ -198,7 +204,7 @@ def _answerer(how: SweepOptions, trees: Trees, setting: SweepSetting) -> Iterato
         yield partial(answered_by, client, trees, setting=setting)
 
 
-def _setting(asked: TwoBodyOptions) -> SweepSetting:
+def _setting(asked: TwoBodyOptions, *, solid: bool) -> SweepSetting:
     """Return what all rows have in common.
 
     Raises:
@@ -210,7 +216,7 @@ def _setting(asked: TwoBodyOptions) -> SweepSetting:
     given = asked.pose._asdict() | asked.motion._asdict()
     degrees = given.pop("degrees")
     defaults = {name: value for name, value in given.items() if value is not None}
-    return SweepSetting(defaults, degrees, asked.accuracy.accuracy())
+    return SweepSetting(defaults, degrees, asked.accuracy.accuracy(), solid)
 
 
 def _read(asked: TwoBodyOptions) -> tuple[Input, Input]:
@@ -240,6 +246,7 @@ def _header(
     }
     # What is not asked for is no key, so that results written before these options came go on.
     options |= {name: value for name, value in asked.units._asdict().items() if value is not None}
+    options |= {"solid": True} if setting.solid else {}
     accuracy = setting.accuracy.as_dict()
     return with_digest(header_record((source_a, source_b), about, options, accuracy))
 
