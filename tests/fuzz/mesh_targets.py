@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from fuzz.kinds import Target, require
 from mesh_files.cell_files import HEXAHEDRON, POINTS, SURFACE_KINDS, TETRA, VOLUME_KINDS, write
+from mesh_files.collada_files import COLLADA_SEEDS
 from mesh_files.deck_files import DECKS
 from mesh_files.gltf_documents import (
     draco_square,
@@ -24,6 +25,7 @@ from mesh_files.gltf_documents import (
 from mesh_files.gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
 from mesh_files.nastran_decks import SEEDS
 from mesh_files.plain_files import FILES
+from mesh_files.threemf_files import THREEMF_SEEDS
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
@@ -49,6 +51,8 @@ SUFFIXES = {
     "ply": (".ply",),
     "off": (".off",),
     "gltf": (".glb", ".gltf"),
+    "threemf": (".3mf",),
+    "collada": (".dae",),
     "vtk": (".vtk",),
     "vtkxml": (".vtu", ".vtp", ".vti", ".vts", ".vtr", ".vtm"),
     "gmsh": (".msh",),
@@ -70,6 +74,8 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
     files += [(".glb", data) for data in _documents()]
+    files += [(".3mf", data) for data in THREEMF_SEEDS]
+    files += [(".dae", data) for data in COLLADA_SEEDS]
     files += _odd_files()
     files += _vtk_files()
     files += [(".bdf", deck.encode("ascii")) for deck in SEEDS]

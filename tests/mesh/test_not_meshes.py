@@ -77,8 +77,6 @@ OTHERS = {
     "step": (b"ISO-10303-21;\nHEADER;\n", "is a STEP file, which holds exact shapes, not a mesh"),
     "hdf5": (b"\x89HDF\r\n\x1a\n", "is an HDF5 file, which is not read"),
     "fbx": (b"Kaydara FBX Binary  \0\x1a\0", "is an FBX scene, not a mesh; export it as glTF"),
-    "3mf": (zipped("3D/3dmodel.model"), "is a 3MF file, not a mesh; export the shape"),
-    "collada": (b"<?xml version='1.0'?>\n<!-- x -->\n<COLLADA ", "is a COLLADA scene, not a mesh"),
     "mtl": (b"# x\n\nnewmtl red\nKd 1 0 0\n", "is a library of materials, which belongs to an OBJ"),
     "dwg": (b"AC1032\0\0\0\0", "is a DWG drawing, not a mesh"),
     "zeros": (bytes(5000), "holds nothing but zeros, not a mesh; copy or download it again"),
@@ -121,8 +119,6 @@ def test_every_signature_is_needed(number, monkeypatch):
 def test_formats_with_readers_of_their_own_are_left_to_them(what, suffixes):
     samples = {
         "a zip archive": zipped(),
-        "a 3MF file": zipped("3D/3dmodel.model"),
-        "a COLLADA scene": b"<COLLADA ",
         "an X3D scene": b"<X3D ",
         "a USD scene": b"#usda 1.0",
     }

@@ -18,9 +18,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pytest
 from mesh_files.cell_files import VOLUME_KINDS, write
+from mesh_files.collada_files import COLLADA_SEEDS
 from mesh_files.deck_files import DECKS
 from mesh_files.gltf_documents import draco_square, meshopt_square, with_fallback
 from mesh_files.nastran_decks import TETRA
+from mesh_files.threemf_files import THREEMF_SEEDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -238,6 +240,19 @@ def test_codecs_unpack_a_mesh_and_do_nothing_else(
     (tmp_path / "packed.glb").write_bytes(with_fallback(made()))
 
     assert watched(tmp_path, ("info", "packed.glb")) == [INNOCENT]
+
+
+def test_scenes_of_xml_are_read_and_nothing_else_is_done(tmp_path: Path) -> None:
+    files = {
+        **{f"{number}.3mf": data for number, data in enumerate(THREEMF_SEEDS)},
+        **{f"{number}.dae": data for number, data in enumerate(COLLADA_SEEDS)},
+    }
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+
+    found = watched(tmp_path, *(("info", name) for name in files))
+
+    assert dict(zip(files, found, strict=True)) == dict.fromkeys(files, INNOCENT)
 
 
 @pytest.mark.needs("vtk")

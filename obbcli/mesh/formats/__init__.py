@@ -37,6 +37,8 @@ _VTK = Format("VTK", "vtk.reader", parts="vtk.parts")
 _GMSH = Format("Gmsh", "gmsh.reader")
 _NASTRAN = Format("Nastran, OptiStruct", "nastran.reader")
 _MEDIT = Format("Medit", "medit")
+_THREEMF = Format("3MF", "threemf.reader", parts="threemf.reader")
+_COLLADA = Format("COLLADA", "collada.reader", parts="collada.reader")
 _TECPLOT = Format("Tecplot", "tecplot.reader")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
@@ -47,6 +49,8 @@ FORMATS = {
     ".off": _OFF,
     ".glb": _GLTF,
     ".gltf": _GLTF,
+    ".3mf": _THREEMF,
+    ".dae": _COLLADA,
     ".vtk": _VTK,
     ".vtu": _VTK,
     ".vtp": _VTK,

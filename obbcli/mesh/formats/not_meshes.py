@@ -71,7 +71,6 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
         "a web page (HTML)",
         _FETCH,
     ),
-    (rb"(<\?xml[^>]*>\s*)?(<!--.{0,2000}?-->\s*)?<COLLADA\b", "a COLLADA scene", _EXPORT),
     (rb"(<\?xml[^>]*>\s*)?(<!doctype\s+x3d[^>]*>\s*)?<X3D\b", "an X3D scene", _EXPORT),
     (rb"(#[^\n]*\n\s*)*newmtl\s", "a library of materials, which belongs to an OBJ file", _MESH),
     (rb"AC10\d\d\x00", "a DWG drawing", _EXPORT),
@@ -91,9 +90,7 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
 #: Suffixes of formats whose files begin so; where one of them has a reader, the file is its own.
 _OWN = {
     "a zip archive": (".3mf",),
-    "a 3MF file": (".3mf",),
     "a STEP file, which holds exact shapes": (".step", ".stp", ".p21"),
-    "a COLLADA scene": (".dae",),
     "a USD scene": (".usd", ".usda", ".usdc"),
     "an X3D scene": (".x3d",),
 }
@@ -128,8 +125,6 @@ def _told(data: bytes) -> tuple[str, str] | None:
     """Return what the beginning of a file tells, and what to do about it."""
     for at, signature, what, remedy in _SIGNATURES:
         if data.startswith(signature, at):
-            if what == "a zip archive" and b"3D/3dmodel.model" in data:
-                return "a 3MF file", _EXPORT
             return what, remedy
     head = strip_mark(data[:_HEAD_BYTES]).lstrip()
     for pattern, what, remedy in _TEXTS:

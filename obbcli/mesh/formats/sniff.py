@@ -18,6 +18,11 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"(ST)?C?N?4?n?OFF\s*((#[^\n]*\n\s*)*\d|BINARY|\Z)", ".off", "an OFF file"),
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
+    (
+        rb"(<\?xml[^>]*>\s*)?(<!--((?!-->)(?s:.)){0,4000}-->\s*)*<COLLADA\b",
+        ".dae",
+        "a COLLADA document",
+    ),
     (rb"(<\?xml[^>]*>\s*)?<VTKFile", ".vtu", "a VTK XML file"),
     (rb"(\*\*[^\n]*\s+)*\*(heading|node|part|preprint|include)\b", ".inp", "an Abaqus deck"),
     (rb"(#[^\n]*\s+)*(title\s*=\s*\"|variables\s*=)", ".tec", "a Tecplot file"),
@@ -29,6 +34,8 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
 _DECK = rb"(?im)^([ \t]*(CEND[ \t]*(\$.*)?\r?$|BEGIN[ \t]+(BULK|SUPER)\b)|GRID\*?[ \t]*,?[ \t]*\d)"
 #: A line of an ASCII STL beside its title.
 _FACETS = rb"(?im)^[ \t]*(facet|endsolid|end[ \t]+solid)\b"
+#: The name of the model in archives of 3MF, as nearly all have it.
+_IN_3MF = b"3D/3dmodel.model"
 _OBJ_WORDS = frozenset(b"v vt vn o g s mtllib usemtl".split())
 
 
@@ -51,6 +58,8 @@ def beginning(data: bytes) -> Beginning | None:
     # A binary STL may begin with any text: its length tells it.
     if is_binary_stl(data):
         return Beginning(".stl", "a binary STL file")
+    if data.startswith(b"PK\x03\x04") and _IN_3MF in data:
+        return Beginning(".3mf", "a 3MF file")
     head = strip_mark(data[:HEAD_BYTES]).lstrip()
     for pattern, suffix, words in _BEGINNINGS:
         # Compiled here: few files are looked at twice.
