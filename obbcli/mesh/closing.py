@@ -70,7 +70,7 @@ class _Gaps:
         nearest = np.full(self._count, np.inf)
         for side in (0, 1):
             np.minimum.at(nearest, self._pairs[:, side], self._gaps)
-        ranked = np.unique(self._gaps)
+        ranked = np.sort(self._gaps)
         steps = np.linspace(0, len(ranked) - 1, _MOST_TRIES - 1).astype(np.int64)
         return [float(nearest[np.isfinite(nearest)].max()), *ranked[steps].tolist()]
 

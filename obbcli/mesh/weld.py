@@ -64,7 +64,7 @@ def welded(vertices: NDArray[np.float64], triangles: NDArray[np.int32], distance
         MeshError: the distance is none, or a cluster is wider than it.
     """
     limit = checked_distance(distance)
-    used = np.unique(triangles)
+    used = np.flatnonzero(np.bincount(triangles.reshape(-1), minlength=len(vertices)))
     _, firsts, inverse = np.unique(
         position_ids(vertices)[used], return_index=True, return_inverse=True
     )
@@ -129,8 +129,11 @@ def pairs_within(points: NDArray[np.float64], limit: float) -> NDArray[np.int64]
         cells.append(np.where(is_high, high, low)[differs])
     found = [_near(points, each, limit) for each in _sharing(cells, members)]
     pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *found])
-    # Two points may share several cells.
-    return np.unique(pairs, axis=0)
+    # Two points may share several cells. A pair of numbers fits one word.
+    # (Sorted and compared: np.unique hashes, which takes several times as long.)
+    keys = np.sort(pairs[:, 0] * len(points) + pairs[:, 1])
+    keys = keys[np.diff(keys, prepend=-1) != 0]
+    return np.stack(np.divmod(keys, len(points)), axis=1)
 
 
 def _sharing(
@@ -159,7 +162,7 @@ def _near(points: NDArray[np.float64], pairs: NDArray[np.int64], limit: float) -
 
 def _refuse_wide(
     points: NDArray[np.float64],
-    rows: NDArray[np.int32],
+    rows: NDArray[np.int64],
     pairs: NDArray[np.int64],
     labels: NDArray[np.int64],
     limit: float,
@@ -192,7 +195,7 @@ def _refuse_wide(
 
 
 def _wide(
-    points: NDArray[np.float64], rows: NDArray[np.int32], ends: tuple[int, int], limit: float
+    points: NDArray[np.float64], rows: NDArray[np.int64], ends: tuple[int, int], limit: float
 ) -> None:
     with np.errstate(over="ignore"):
         gap = float(lengths((points[ends[1]] - points[ends[0]])[None])[0])
