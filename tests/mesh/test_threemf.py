@@ -252,3 +252,31 @@ def test_shifts_of_items_and_components_add_up():
     found = load(model(objects, f'<item objectid="3" {shift(0, 0, 3)}/>'))
 
     assert found.vertices.tolist() == moved(1, 2, 3)
+
+
+@pytest.mark.parametrize("word", ["1", "+1", " 1 ", "1.", "1.0", "10e-1", "0.1E+1"])
+def test_numbers_may_be_written_in_every_way_that_3mf_knows(word):
+    assert load(changed('x="1"', f'x="{word}"')).vertices.tolist() == CORNERS
+
+
+@pytest.mark.parametrize("word", ["1_0", "", "one", "inf", "-inf", "nan", "0x1", "\u0661", "1 1"])
+def test_what_python_takes_for_a_number_need_be_none_of_3mf(word):
+    with pytest.raises(MeshError, match=r"line 4: '.*' is not a number; export it again"):
+        load(changed('x="1"', f'x="{word}"'))
+
+
+@pytest.mark.parametrize("word", ["1", "+1", " 1 ", "01"])
+def test_indices_may_be_written_in_every_way_that_3mf_knows(word):
+    assert load(changed('v2="1"', f'v2="{word}"')).triangles.tolist() == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize("word", ["1_0", "", "1.0", "\u0661", "\u00b2", "9" * 40, "-1"])
+def test_what_python_takes_for_an_index_need_be_none_of_3mf(word):
+    with pytest.raises(MeshError, match=r"line 6: '.*' is not the number of a vertex"):
+        load(changed('v2="1"', f'v2="{word}"'))
+
+
+def test_coordinates_whose_sum_is_out_of_range_are_read():
+    found = load(changed('x="1" y="0"', 'x="1e308" y="1e308"'))
+
+    assert found.vertices[1].tolist() == [1e308, 1e308, 0]

@@ -6,6 +6,7 @@ import re
 from array import array
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -55,6 +56,8 @@ INSIDE = {
     "item": {"metadatagroup"},
 }
 _NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
+#: Three indices have so many digits at most, each ten.
+_SHORT = 30
 _INDEX = re.compile(r"\s*\+?\d{1,10}\s*", re.ASCII)
 
 
@@ -135,7 +138,7 @@ def number(word: str) -> float:
         NoNumberError: it spells none.
     """
     value = float(word) if _NUMBER.fullmatch(word) else np.nan
-    if not np.isfinite(value):
+    if not isfinite(value):
         raise NoNumberError(f"'{shown(word.encode())}' is not a number")
     return value
 
@@ -152,6 +155,28 @@ def index(word: str, count: int) -> int:
     if value >= count:
         raise NoNumberError(f"a triangle names vertex {value}, the last one is {count - 1}")
     return value
+
+
+def quick_numbers(words: tuple[str, str, str]) -> list[float] | None:
+    """Return what `number` makes of three words; None where it has to look at them itself."""
+    text = "".join(words)
+    if not text.isascii() or "_" in text:
+        return None
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        return None
+    # The sum is finite only if all of them are.
+    return values if isfinite(values[0] + values[1] + values[2]) else None
+
+
+def quick_indices(words: tuple[str, str, str], count: int) -> list[int] | None:
+    """Return what `index` makes of three words; None where it has to look at them itself."""
+    text = "".join(words)
+    if len(text) > _SHORT or not (text.isascii() and text.isdigit()) or "" in words:
+        return None
+    values = [int(word) for word in words]
+    return values if max(values) < count else None
 
 
 def matrix_of(text: str | None) -> NDArray[np.float64] | None:

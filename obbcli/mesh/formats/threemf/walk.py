@@ -21,6 +21,8 @@ from obbcli.mesh.formats.threemf.model import (
     index,
     matrix_of,
     number,
+    quick_indices,
+    quick_numbers,
 )
 
 if TYPE_CHECKING:
@@ -149,9 +151,11 @@ class _Walk:
         return Placement(attributes["objectid"].strip(), path, matrix, line)
 
     def _take_vertex(self, attributes: dict[str, str]) -> None:
-        self._object.numbers.extend([number(attributes[axis]) for axis in "xyz"])
+        words = attributes["x"], attributes["y"], attributes["z"]
+        self._object.numbers.extend(quick_numbers(words) or map(number, words))
 
     def _take_triangle(self, attributes: dict[str, str]) -> None:
+        words = attributes["v1"], attributes["v2"], attributes["v3"]
         count = len(self._object.numbers) // 3
-        names = ("v1", "v2", "v3")
-        self._object.corners.extend([index(attributes[name], count) for name in names])
+        corners = quick_indices(words, count) or [index(word, count) for word in words]
+        self._object.corners.extend(corners)
