@@ -93,9 +93,10 @@ std::vector<double> contacts(const obb::TreeView& a, const obb::TreeView& b, std
     obb::Pose away = pose(index);
     away.translation.x += 3;
     const obb::Screw sliding{{-4, 0, 0}, {}, {}};
+    const obb::Limits limits{.distance_tolerance = 1e-6};
     obb::ContactQuery query(
         a, {}, {}, b, away, sliding,
-        {.duration = 1, .time_tolerance = 1e-6, .distance_tolerance = 1e-6, .each_pair = true});
+        {.duration = 1, .time_tolerance = 1e-6, .limits = limits, .each_pair = true});
     std::vector<double> times;
     bool is_done = false;
     while (!is_done && times.size() < kContacts) {
