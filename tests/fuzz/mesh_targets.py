@@ -25,7 +25,7 @@ from mesh_files.gltf_documents import (
 from mesh_files.gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
 from mesh_files.nastran_decks import SEEDS
 from mesh_files.plain_files import FILES
-from mesh_files.threemf_files import THREEMF_SEEDS
+from mesh_files.threemf_files import ASSEMBLY, THREEMF_SEEDS, archive
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
@@ -74,7 +74,7 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     inline = document(buffers=[{"byteLength": len(body), "uri": uri}])
     files += [(".glb", glb(DOCUMENT)), (".gltf", json.dumps(inline).encode())]
     files += [(".glb", data) for data in _documents()]
-    files += [(".3mf", data) for data in THREEMF_SEEDS]
+    files += [(".3mf", data) for data in (*THREEMF_SEEDS, ASSEMBLY.encode())]
     files += [(".dae", data) for data in COLLADA_SEEDS]
     files += _odd_files()
     files += _vtk_files()
@@ -151,6 +151,9 @@ def _odd_files() -> list[tuple[str, bytes]]:
 
 def _run(suffixes: tuple[str, ...], data: bytes) -> None:
     suffix = suffixes[data[0] % len(suffixes) if data else 0]
+    if suffix == ".3mf" and not data[1:].startswith(b"PK"):
+        # A model on its own: changes to a packed one end at its checksum.
+        data = data[:1] + archive(data[1:])
     try:
         mesh = load_mesh_bytes(data[1:], suffix)
     except MeshError:
