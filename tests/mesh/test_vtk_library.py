@@ -52,7 +52,7 @@ def test_without_vtk_the_refusal_names_it(name, tmp_path, request):
 
 @pytest.mark.usefixtures("_without_vtk")
 def test_vtk_that_cannot_be_imported_is_not_there():
-    from obbcli.mesh.formats.vtk.library import has_vtk
+    from obbcli.mesh.formats.vtk.modules import has_vtk
 
     assert not has_vtk()
 
@@ -73,13 +73,13 @@ def test_vtk_is_asked_for_its_reading_modules_alone(tmp_path):
 
 
 def test_complaints_of_vtk_are_one_error_and_nothing_else(tmp_path, capfd, monkeypatch):
-    from obbcli.mesh.formats.vtk import library as vtk_library
+    from obbcli.mesh.formats.vtk import modules
 
     path = vtk_files.write_legacy(tmp_path / "a.vtk", vtk_files.DATA_SETS["grid"](), False, 42)
     cut = path.read_bytes()[:150]
 
     with pytest.raises(MeshError, match=r"VTK cannot read it whole: .*; export it again") as caught:
-        vtk_library.legacy_data_set(vtk_library_source(cut), cut)
+        modules.legacy_data_set(vtk_library_source(cut), cut)
 
     assert capfd.readouterr() == ("", "")
     assert not re.search(r"\.cxx|0x", str(caught.value))

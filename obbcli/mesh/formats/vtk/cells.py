@@ -8,7 +8,7 @@ import numpy as np
 
 from obbcli.mesh.formats.cells.surface import Block
 from obbcli.mesh.formats.text import counted
-from obbcli.mesh.formats.vtk.library import GHOSTS
+from obbcli.mesh.formats.vtk.modules import GHOSTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,7 +13,7 @@ import numpy as np
 
 from obbcli.mesh.formats.cells.surface import surface
 from obbcli.mesh.formats.vtk.legacy_guard import walk_legacy
-from obbcli.mesh.formats.vtk.library import has_vtk, legacy_data_set, xml_data_set
+from obbcli.mesh.formats.vtk.modules import has_vtk, legacy_data_set, xml_data_set
 from obbcli.mesh.formats.vtk.xml_guard import walk_xml
 
 if TYPE_CHECKING:
