@@ -54,8 +54,8 @@ def _through_either(request, monkeypatch):
     [
         (b"3 0 2 3", b"3 0 2 4", r"triangle 1 uses point 4 of 4"),
         (b"3 0 2 3", b"3 0 2 -1", r"triangle 1 uses point -1 of 4"),
-        (b"1 1 0", b"1 nan 0", r"vertex 2: y is nan"),
-        (b"1 1 0", b"1 inf 0", r"vertex 2: y is inf"),
+        (b"1 1 0", b"1 nan 0", r"vertex 2: y is nan|cannot read it whole"),
+        (b"1 1 0", b"1 inf 0", r"vertex 2: y is inf|cannot read it whole"),
         (b"POINTS 4", b"POINTS 4000000000", r":5: claims 4000000000 of something"),
         (b"POINTS 4", b"POINTS -4", r":5: claims -4"),
         (b"CELLS 2 8", b"CELLS 2 4000000000", r":7: claims 4000000000"),
