@@ -51,6 +51,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         random.Random(seed).shuffle(items)
 
 
+def pytest_make_parametrize_id(val: object, argname: str) -> str | None:
+    """Name values that are bytes by their argument: every worker must call a test the same.
+
+    Archives made when tests are collected hold the time, so that their bytes may differ.
+    """
+    return argname if isinstance(val, bytes) else None
+
+
 # ---- Workers
 
 

@@ -16,7 +16,7 @@ PARTS = "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no b\nf 1 3 2\n"
 def packed(here):
     """Work in a folder where each cube is packed as well."""
     for name in ("cube.stl", "touching.obj", "apart.obj"):
-        (here / f"{name}.gz").write_bytes(gzip.compress((here / name).read_bytes()))
+        (here / f"{name}.gz").write_bytes(gzip.compress((here / name).read_bytes(), mtime=0))
     return here
 
 
@@ -59,7 +59,7 @@ def test_packed_standard_input_is_read(packed, obbtree, monkeypatch):
 
 
 def test_parts_of_a_packed_mesh_are_a_scene(here, obbtree):
-    (here / "m.obj.gz").write_bytes(gzip.compress(PARTS.encode()))
+    (here / "m.obj.gz").write_bytes(gzip.compress(PARTS.encode(), mtime=0))
 
     assert obbtree("scene", "m.obj.gz", "-q").out == "overlap_at_start 0.0 a b\n"
     assert obbtree("info", "m.obj.gz", "--parts", "-q").out == "a\nb\n"

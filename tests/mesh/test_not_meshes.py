@@ -64,7 +64,7 @@ OTHERS = {
     "not found": (b"404: Not Found", "is what a web server said"),
     "zip": (zipped(), "is a zip archive, not a mesh; unpack it and name the mesh inside"),
     "gzip twice": (
-        gzip.compress(gzip.compress(OBJ)),
+        gzip.compress(gzip.compress(OBJ, mtime=0), mtime=0),
         "is a gzip archive, not a mesh; unpack it",
     ),
     "bzip2": (bz2.compress(OBJ), "is a bzip2 archive"),

@@ -51,7 +51,7 @@ def same(mesh, plain):
 def test_packed_mesh_is_the_plain_one(tmp_path, name, hashed):
     data = CONTENTS[name]
     plain = load_mesh(placed(tmp_path, name, data))
-    stored = gzip.compress(data)
+    stored = gzip.compress(data, mtime=0)
 
     mesh = load_mesh(placed(tmp_path, f"{name}.gz", stored), hashed=hashed)
 
@@ -63,7 +63,7 @@ def test_packed_mesh_is_the_plain_one(tmp_path, name, hashed):
 
 @pytest.mark.parametrize("name", ["m.STL.GZ", "m.gz", "m.obj.gz"])
 def test_content_counts_before_the_name(tmp_path, name):
-    mesh = load_mesh(placed(tmp_path, name, gzip.compress(stl(cube()))))
+    mesh = load_mesh(placed(tmp_path, name, gzip.compress(stl(cube()), mtime=0)))
 
     assert len(mesh.triangles) == 12
     assert mesh.notes == (
@@ -72,7 +72,7 @@ def test_content_counts_before_the_name(tmp_path, name):
 
 
 def test_packed_file_that_is_not_called_so_is_told_in_a_note(tmp_path):
-    mesh = load_mesh(placed(tmp_path, "m.stl", gzip.compress(stl(cube()))), hashed=False)
+    mesh = load_mesh(placed(tmp_path, "m.stl", gzip.compress(stl(cube()), mtime=0)), hashed=False)
 
     assert len(mesh.triangles) == 12
     assert mesh.notes == ("is packed by gzip by its content, and is read as such",)
@@ -90,13 +90,13 @@ def test_binary_stl_whose_title_begins_as_gzip_does_is_an_stl(tmp_path):
 
 
 def test_members_of_a_packed_file_are_one_content(tmp_path):
-    data = gzip.compress(OBJ[:100]) + gzip.compress(OBJ[100:])
+    data = gzip.compress(OBJ[:100], mtime=0) + gzip.compress(OBJ[100:], mtime=0)
 
     assert len(load_mesh(placed(tmp_path, "m.obj.gz", data)).triangles) == 12
 
 
 def test_packed_bytes_of_a_stream_are_read():
-    stored = gzip.compress(OBJ)
+    stored = gzip.compress(OBJ, mtime=0)
 
     mesh = load_mesh_bytes(stored)
 
@@ -107,7 +107,7 @@ def test_packed_bytes_of_a_stream_are_read():
 def test_pipe_with_a_packed_mesh_is_read(tmp_path):
     path = tmp_path / "m.obj.gz"
     os.mkfifo(path)
-    writer = threading.Thread(target=path.write_bytes, args=(gzip.compress(OBJ),))
+    writer = threading.Thread(target=path.write_bytes, args=(gzip.compress(OBJ, mtime=0),))
     writer.start()
 
     mesh = load_mesh(path)
@@ -117,7 +117,7 @@ def test_pipe_with_a_packed_mesh_is_read(tmp_path):
 
 
 def test_parts_of_a_packed_mesh_are_its_parts(tmp_path):
-    stored = gzip.compress(NAMED_PARTS)
+    stored = gzip.compress(NAMED_PARTS, mtime=0)
     path = placed(tmp_path, "m.obj.gz", stored)
 
     assembly = load_parts(path)
@@ -129,7 +129,7 @@ def test_parts_of_a_packed_mesh_are_its_parts(tmp_path):
 
 @pytest.mark.parametrize("cut", [3, 9, 10, 11, 40, -9, -8, -4, -1])
 def test_packed_mesh_that_ends_too_soon_is_refused(tmp_path, cut):
-    path = placed(tmp_path, "m.stl.gz", gzip.compress(stl(cube()))[:cut])
+    path = placed(tmp_path, "m.stl.gz", gzip.compress(stl(cube()), mtime=0)[:cut])
 
     with pytest.raises(MeshError) as fault:
         load_mesh(path)
@@ -170,11 +170,17 @@ def test_any_damaged_byte_of_a_packed_mesh_gives_the_mesh_or_one_error(tmp_path)
 @pytest.mark.parametrize(
     ("data", "fault"),
     [
-        (gzip.compress(OBJ) + b"tail", "is a gzip file that is damaged; copy or download it again"),
-        (gzip.compress(b""), "is empty, expected a mesh"),
-        (gzip.compress(OFF), "holds OFF, packed by gzip; read packed are STL, OBJ and PLY"),
-        (gzip.compress(gzip.compress(OBJ)), "is a gzip archive, not a mesh"),
-        (gzip.compress(b"<!DOCTYPE html><html>"), "is a web page"),
+        (
+            gzip.compress(OBJ, mtime=0) + b"tail",
+            "is a gzip file that is damaged; copy or download it again",
+        ),
+        (gzip.compress(b"", mtime=0), "is empty, expected a mesh"),
+        (
+            gzip.compress(OFF, mtime=0),
+            "holds OFF, packed by gzip; read packed are STL, OBJ and PLY",
+        ),
+        (gzip.compress(gzip.compress(OBJ, mtime=0), mtime=0), "is a gzip archive, not a mesh"),
+        (gzip.compress(b"<!DOCTYPE html><html>", mtime=0), "is a web page"),
     ],
 )
 @pytest.mark.parametrize("name", ["m.stl.gz", "m.gz"])
@@ -224,7 +230,7 @@ def test_bombs_are_refused_before_they_fill_memory(tmp_path):
 
 
 def test_bound_on_unpacking_is_a_part_of_memory(tmp_path, monkeypatch):
-    stored = gzip.compress(OBJ)
+    stored = gzip.compress(OBJ, mtime=0)
     path = placed(tmp_path, "m.obj.gz", stored)
 
     monkeypatch.setattr(packed, "most_bytes", lambda: len(OBJ))
