@@ -1,4 +1,4 @@
-"""Pictures as scenes of triangles and lines that turn in a viewer: GLB files. Needs trimesh.
+"""Pictures as scenes of triangles and lines that turn in a viewer: GLB files, which trimesh writes.
 
 Numbers of such a file are float32; its bodies keep their own coordinates, and where they are stands
 beside them.

@@ -1,4 +1,4 @@
-"""Pictures as one HTML file that turns under the mouse and opens offline. Needs trimesh.
+"""Pictures as one HTML file that turns under the mouse and opens offline.
 
 trimesh's own page holds the viewer, three.js, as a whole.
 """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ import trimesh
 from claims.png_files import pixels_of
 
 from obbcli import ObbTree
-from obbcli.cli.commands import view
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_meshes"
 LINKS = SAMPLES / "chain_link_a.off", SAMPLES / "chain_link_b.ply"
@@ -223,20 +221,6 @@ def test_what_cannot_be_drawn_is_a_usage_error(here, obbtree, words, message):
     assert message in ended.err
     assert ended.out == ""
     assert sorted(here.iterdir()) == before
-
-
-@pytest.mark.parametrize("suffix", ["glb", "html"])
-def test_missing_package_is_named_with_what_installs_it(here, obbtree, monkeypatch, suffix):
-    def find(name, *rest):
-        return None if name == "trimesh" else importlib.util.find_spec(name, *rest)
-
-    monkeypatch.setattr(view, "find_spec", find)
-
-    ended = obbtree("view", "cube.stl", "-o", f"c.{suffix}")
-
-    assert ended.code == 2
-    assert "needs the package trimesh; install it: pip install trimesh" in ended.err
-    assert obbtree("view", "cube.stl", *SMALL, "-o", "c.png").code == 0
 
 
 def test_input_is_not_painted_over(here, obbtree):

@@ -17,7 +17,7 @@ else:
     import tomli as tomllib
 
 PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
-EXTRAS = ("distributed", "plot", "view", "test", "test-extras")
+EXTRAS = ("distributed", "plot", "test", "test-extras")
 _REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)>=([0-9.]+)((?:\s*;.*)?)")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,8 +34,6 @@ if TYPE_CHECKING:
 
 _FORMATS = (".glb", ".html", ".png")
 _NAMED = ".glb, .html or .png"
-# Formats that trimesh writes.
-_NEED_TRIMESH = (".glb", ".html")
 _MOST_GHOSTS, _MOST_PIXELS = 100, 8192
 # Closer, a step of depth is wider than a pixel, and what hides what is no longer seen.
 _MOST_ZOOM = 1_000_000
@@ -58,7 +55,7 @@ Examples:
 @view_options
 @about_two(
     "Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.",
-    f"Draw into FILE, which is required: {_NAMED} (the first two need trimesh).",
+    f"Draw into FILE, which is required: {_NAMED}.",
     is_b_required=False,
     takes_dash=False,
 )
@@ -88,7 +85,7 @@ def _target(asked: TwoBodyOptions, how: ViewOptions) -> Path:
     """Return where the picture goes, once it is known that it can be drawn there.
 
     Raises:
-        UsageError: no such picture is drawn, or a package is missing.
+        UsageError: no such picture is drawn.
         OutputError: it may not be written.
     """
     target = asked.common.output
@@ -97,9 +94,6 @@ def _target(asked: TwoBodyOptions, how: ViewOptions) -> Path:
     suffix = target.suffix.lower()
     if suffix not in _FORMATS:
         raise UsageError(f"-o {target}", f"is no {_NAMED} file", "name one that is")
-    if suffix in _NEED_TRIMESH and find_spec("trimesh") is None:
-        remedy = "install it: pip install trimesh, or draw a .png"
-        raise UsageError(f"-o {target}", "needs the package trimesh", remedy)
     for name, value in (("--zoom", how.zoom), ("--size", how.size)):
         if value is not None and suffix != ".png":
             raise UsageError(name, f"has no meaning for a {suffix} file", "leave it out")
