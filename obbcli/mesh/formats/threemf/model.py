@@ -56,9 +56,7 @@ INSIDE = {
     "item": {"metadatagroup"},
 }
 _NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
-#: Three indices have so many digits at most, each ten.
-_SHORT = 30
-_INDEX = re.compile(r"\s*\+?\d{1,10}\s*", re.ASCII)
+_INDEX = re.compile(r"\s*\+?0*\d{1,10}\s*", re.ASCII)
 
 
 class NoNumberError(ValueError):
@@ -151,32 +149,10 @@ def index(word: str, count: int) -> int:
     """
     if not _INDEX.fullmatch(word):
         raise NoNumberError(f"'{shown(word.encode())}' is not the number of a vertex")
-    value = int(word)
+    value = int(word.strip().lstrip("+0") or "0")
     if value >= count:
         raise NoNumberError(f"a triangle names vertex {value}, the last one is {count - 1}")
     return value
-
-
-def quick_numbers(words: tuple[str, str, str]) -> list[float] | None:
-    """Return what `number` makes of three words; None where it has to look at them itself."""
-    text = "".join(words)
-    if not text.isascii() or "_" in text:
-        return None
-    try:
-        values = [float(word) for word in words]
-    except ValueError:
-        return None
-    # The sum is finite only if all of them are.
-    return values if isfinite(values[0] + values[1] + values[2]) else None
-
-
-def quick_indices(words: tuple[str, str, str], count: int) -> list[int] | None:
-    """Return what `index` makes of three words; None where it has to look at them itself."""
-    text = "".join(words)
-    if len(text) > _SHORT or not (text.isascii() and text.isdigit()) or "" in words:
-        return None
-    values = [int(word) for word in words]
-    return values if max(values) < count else None
 
 
 def matrix_of(text: str | None) -> NDArray[np.float64] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from obbcli.mesh.formats.safe_xml import XmlStream
@@ -21,17 +22,21 @@ from obbcli.mesh.formats.threemf.model import (
     index,
     matrix_of,
     number,
-    quick_indices,
-    quick_numbers,
 )
+from obbcli.mesh.formats.threemf.runs import Run, cut_at_ends, indices_of, numbers_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from obbcli.mesh.formats.threemf.archive import Archive
     from obbcli.mesh.source import Source
 
 #: Where elements of extensions change nothing of the surface.
 _FREE = {"model", "resources", "basematerials", "metadatagroup", "item", "metadata", "base"}
 _AGAIN = "export it again"
+#: Lists that may be long, and what stands in them.
+_LISTS = {"vertices": "vertex", "triangles": "triangle"}
+_LIST = re.compile(rb"<(?:vertices|triangles)>")
 
 
 def walked(source: Source, archive: Archive, part: str, at: str) -> Model:
@@ -61,6 +66,8 @@ class _Walk:
         self._skipped = 0
         self._object = Object("", "", 0)
         self._prefixes: dict[str, str] = {}
+        self._defaults: set[str] = set()
+        self._is_odd = False
         self._error = self._stream.error
         self._takes = {
             "model": self._take_model,
@@ -73,12 +80,66 @@ class _Walk:
 
     def run(self, at: str) -> Model:
         """Walk through all of it."""
-        self._stream.parser.StartNamespaceDeclHandler = self._take_prefix
-        self._stream.run(self._archive.pieces(self._model.part, at), self._start, self._end)
+        parser = self._stream.parser
+        parser.StartNamespaceDeclHandler = self._take_prefix
+        parser.StartCdataSectionHandler = self._see_odd
+        pieces = cut_at_ends(self._archive.pieces(self._model.part, at))
+        self._stream.run(self._for_expat(pieces), self._start, self._end)
         return self._model
+
+    def _for_expat(self, pieces: Iterable[bytes]) -> Iterator[bytes]:
+        """Yield what expat is to read; what `Run` takes out leaves the ends of its lines."""
+        given = 0
+        for piece in pieces:
+            rest = piece
+            while rest:
+                # Between two tokens of a list, and not within one that goes on, as comments do.
+                is_between = self._stream.parser.CurrentByteIndex == given
+                kind = _LISTS.get(self._path[-1]) if is_between and self._is_plain() else None
+                size, text = self._take_run(rest, kind) if kind else (0, b"")
+                if not size:
+                    found = _LIST.search(rest)
+                    size = found.end() if found else len(rest)
+                    text = rest[:size]
+                rest = rest[size:]
+                given += len(text)
+                yield text
+
+    def _is_plain(self) -> bool:
+        """Return whether names without a prefix are those of 3MF, and nothing odd was seen."""
+        return not (self._is_odd or self._skipped) and self._defaults == {CORE}
+
+    def _take_run(self, text: bytes, kind: str) -> tuple[int, bytes]:
+        """Take vertices or triangles at the beginning of a text.
+
+        Returns:
+            How many bytes were taken, and the ends of lines in them.
+        """
+        run = Run(text, kind)
+        if kind == "vertex":
+            words = run.words((b"x", b"y", b"z"))
+            numbers = None if words is None else numbers_of(words)
+            if numbers is None:
+                return 0, b""
+            self._object.numbers.frombytes(numbers.tobytes())
+        else:
+            words = run.words((b"v1", b"v2", b"v3"))
+            count = len(self._object.numbers) // 3
+            corners = None if words is None else indices_of(words, count)
+            if corners is None:
+                return 0, b""
+            self._object.corners.frombytes(corners.tobytes())
+        return run.size, run.line_ends
+
+    def _see_odd(self) -> None:
+        self._is_odd = True
 
     def _take_prefix(self, prefix: str | None, uri: str | None) -> None:
         self._prefixes.setdefault(prefix or "", uri or "")
+        if prefix is None:
+            # One that is first met below the root holds for a part of the text alone.
+            self._is_odd = self._is_odd or (len(self._path) > 1 and not self._defaults)
+            self._defaults.add(uri or "")
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         space, _, local = name.rpartition(" ")
@@ -151,11 +212,8 @@ class _Walk:
         return Placement(attributes["objectid"].strip(), path, matrix, line)
 
     def _take_vertex(self, attributes: dict[str, str]) -> None:
-        words = attributes["x"], attributes["y"], attributes["z"]
-        self._object.numbers.extend(quick_numbers(words) or map(number, words))
+        self._object.numbers.extend(number(attributes[name]) for name in ("x", "y", "z"))
 
     def _take_triangle(self, attributes: dict[str, str]) -> None:
-        words = attributes["v1"], attributes["v2"], attributes["v3"]
         count = len(self._object.numbers) // 3
-        corners = quick_indices(words, count) or [index(word, count) for word in words]
-        self._object.corners.extend(corners)
+        self._object.corners.extend(index(attributes[name], count) for name in ("v1", "v2", "v3"))
