@@ -9,7 +9,7 @@ from mesh_files.abaqus_decks import PART, TETRA, TETRA_NODES, corners, deck
 
 from obbcli.errors import MeshError
 from obbcli.mesh import load_mesh, load_mesh_bytes
-from obbcli.mesh.formats.abaqus import reader as abaqus
+from obbcli.mesh.formats.abaqus import model as abaqus
 from obbcli.mesh.formats.abaqus.keywords import PASSED_OVER, REFUSED
 
 INSTANCE = f"{PART}*ASSEMBLY\n*INSTANCE, NAME=a, PART=Tet\n"

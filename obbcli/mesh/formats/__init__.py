@@ -39,7 +39,7 @@ _NASTRAN = Format("Nastran, OptiStruct", "nastran.reader")
 _MEDIT = Format("Medit", "medit")
 _THREEMF = Format("3MF", "threemf.reader", parts="threemf.reader")
 _COLLADA = Format("COLLADA", "collada.reader", parts="collada.reader")
-_TECPLOT = Format("Tecplot", "tecplot.reader")
+_TECPLOT = Format("Tecplot", "tecplot.reader", parts="tecplot.reader")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
 FORMATS = {
@@ -59,7 +59,7 @@ FORMATS = {
     ".vtr": _VTK,
     ".vtm": _VTK,
     ".msh": _GMSH,
-    ".inp": Format("Abaqus, CalculiX, AVS UCD", "inp"),
+    ".inp": Format("Abaqus, CalculiX, AVS UCD", "inp", parts="inp"),
     ".avs": Format("AVS UCD", "ucd"),
     ".bdf": _NASTRAN,
     ".fem": _NASTRAN,
@@ -67,7 +67,7 @@ FORMATS = {
     ".mesh": _MEDIT,
     ".meshb": _MEDIT,
     ".vol": Format("Netgen", "through_meshio.reader", "netgen"),
-    ".su2": Format("SU2", "su2"),
+    ".su2": Format("SU2", "su2", parts="su2"),
     ".dat": _TECPLOT,
     ".tec": _TECPLOT,
     ".plt": _TECPLOT,

@@ -6,6 +6,7 @@ meshio reads one zone of several. The format: https://su2code.github.io/docs_v7/
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from obbcli.mesh.formats.cells.parts import CellPart, joined_surface
 from obbcli.mesh.formats.cells.surface import Block
 from obbcli.mesh.formats.number_rows import blank_rows, whole_numbers
 from obbcli.mesh.formats.text import shown, strip_mark, whole
+from obbcli.mesh.parts.placed import PlacedPart, UniquePaths
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,11 +62,12 @@ class _Zone:
         self.dimension: int | None = None
         self.points: NDArray[np.float64] | None = None
         self.elements: list[Rows] = []
+        self.sections: list[_Section] = []
 
     @property
     def is_begun(self) -> bool:
-        """Return whether anything of it has been read."""
-        return self.dimension is not None
+        """Return whether the file has keywords of it that make points or elements."""
+        return any(not _PASSED_OVER.fullmatch(each.keyword) for each in self.sections)
 
 
 def read_su2(source: Source) -> MeshArrays:
@@ -74,6 +77,26 @@ def read_su2(source: Source) -> MeshArrays:
         MeshError: an unknown keyword or cell, counts that do not fit, a point that is not there;
             with the line.
     """
+    return joined_surface(source, [_part(source, zone) for zone in _zones(source)])
+
+
+def parts_su2(source: Source) -> Iterator[PlacedPart]:
+    """Yield the zones of a file by their numbers; what a zone holds is read when it is decoded.
+
+    Raises:
+        MeshError: as `read_su2`; what is wrong in a zone, when it is decoded.
+    """
+    paths = UniquePaths()
+    for zone in _zones(source):
+        yield PlacedPart(paths.take(zone.name), id(zone), partial(_decoded, source, zone))
+
+
+def _decoded(source: Source, zone: _Zone) -> MeshArrays:
+    return joined_surface(source, [_part(source, zone)])
+
+
+def _zones(source: Source) -> list[_Zone]:
+    """Return the zones of a file, each with its keywords, which are not read yet."""
     zones, claimed = [_Zone("")], None
     for section in _sections(source):
         if section.keyword == b"IZONE":
@@ -82,13 +105,17 @@ def read_su2(source: Source) -> MeshArrays:
         elif section.keyword == b"NZONE":
             claimed = section
         else:
-            _take(source, zones[-1], section)
-    parts = [_part(source, zone) for zone in zones if zone.is_begun]
-    if claimed is not None and _count(source, claimed) != len(parts):
-        raise _cut_short(source, claimed, f"{len(parts)} zones")
-    if not parts:
+            zones[-1].sections.append(section)
+    # What is passed over before the first zone may be damaged, too.
+    for zone in zones:
+        for section in zone.sections if not zone.is_begun else ():
+            _take(source, zone, section)
+    found = [zone for zone in zones if zone.is_begun]
+    if claimed is not None and _count(source, claimed) != len(found):
+        raise _cut_short(source, claimed, f"{len(found)} zones")
+    if not found:
         raise source.error("has no NDIME, which begins an SU2 mesh", "export it again")
-    return joined_surface(source, parts)
+    return found
 
 
 def _sections(source: Source) -> list[_Section]:
@@ -194,7 +221,14 @@ def _points(source: Source, section: _Section, dimension: int) -> NDArray[np.flo
 
 
 def _part(source: Source, zone: _Zone) -> CellPart:
-    """Return the cells of a zone, markers first."""
+    """Return the cells of a zone, markers first.
+
+    Raises:
+        MeshError: as `read_su2`.
+    """
+    while zone.sections:
+        _take(source, zone, zone.sections[0])
+        del zone.sections[0]
     if zone.points is None:
         raise source.error(f"zone '{zone.name}' has no NPOIN", "it was cut short")
     blocks: list[Block] = []

@@ -6,24 +6,19 @@ first and what follows a comment. Each keyword is read, passed over, or refused 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING
 
-from obbcli.mesh.formats.abaqus import generated
-from obbcli.mesh.formats.abaqus.cells import cells_of
-from obbcli.mesh.formats.abaqus.keywords import NAMED_SURFACES, PASSED_OVER, REFUSED
-from obbcli.mesh.formats.abaqus.scope import Scope
-from obbcli.mesh.formats.abaqus.sections import Deck, check_options
-from obbcli.mesh.formats.abaqus.systems import local_system, placement
-from obbcli.mesh.formats.cells.parts import joined_surface
+from obbcli.mesh.formats.abaqus.model import Model
+from obbcli.mesh.formats.abaqus.sections import Deck
+from obbcli.mesh.formats.cells.parts import joined_surface, surfaces
 from obbcli.mesh.formats.text import counted
+from obbcli.mesh.parts.placed import PlacedPart, UniquePaths, joined, placed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Iterator
 
-    from obbcli.errors import MeshError
-    from obbcli.mesh.formats.abaqus.sections import Section
-    from obbcli.mesh.formats.abaqus.systems import Placement
-    from obbcli.mesh.formats.cells.parts import CellPart
+    from obbcli.mesh.formats.abaqus.model import Body
     from obbcli.mesh.source import MeshArrays, Source
 
 
@@ -31,201 +26,67 @@ def read_abaqus(source: Source) -> MeshArrays:
     """Return the surface of a deck: every instance where it stands, or the parts of a flat deck.
 
     Surface elements as they stand; then the faces that one solid element alone has. Shells,
-    membranes and rigid elements are their reference surfaces, without thickness.
+    membranes and rigid elements are their reference surfaces, without thickness. Copies have the
+    triangles of one another.
 
     Raises:
         MeshError: a keyword, parameter or element type that is not read, a damaged line, a node
             that is not defined, no surface; with the line.
     """
-    model = _Model()
+    model, bodies = _bodies(source)
+    shapes = {body.key: body for body in bodies}
+    cells = {key: body.cells(source) for key, body in shapes.items()}
+    if not any(part.blocks for part in cells.values()):
+        raise _without_surface(source, model)
+    if all(body.matrix is None for body in bodies):
+        return joined_surface(source, [cells[body.key] for body in bodies])
+    found = dict(zip(cells, surfaces(source, list(cells.values())), strict=True))
+    return joined((placed(found[body.key], body.matrix) for body in bodies), source, "instances")
+
+
+def parts_abaqus(source: Source) -> Iterator[PlacedPart]:
+    """Yield the instances of a deck, or its parts where none is placed, in `read_abaqus`'s order.
+
+    Keywords are looked at throughout; nodes and elements are read when a part is decoded.
+
+    Raises:
+        MeshError: as `read_abaqus`; what is wrong with a part's own lines, when it is decoded.
+    """
+    model, bodies = _bodies(source)
+    if not bodies:
+        raise _without_surface(source, model)
+    paths = UniquePaths()
+    decoded = _Decoded(source)
+    for body in bodies:
+        yield PlacedPart(paths.take(body.name), body.key, partial(decoded.of, body), body.matrix)
+
+
+class _Decoded:
+    """Decodes the bodies of a deck; copies are decoded once."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._arrays: dict[tuple[int, ...], MeshArrays] = {}
+
+    def of(self, body: Body) -> MeshArrays:
+        """Return vertices and triangles of a body in its own coordinates."""
+        if body.key not in self._arrays:
+            self._arrays[body.key] = joined_surface(self._source, [body.cells(self._source)])
+        return self._arrays[body.key]
+
+
+def _bodies(source: Source) -> tuple[Model, list[Body]]:
+    """Return what a deck holds, after a look at all keywords; notes tell which files it names."""
+    model = Model()
     deck = Deck(source)
     for section in deck.sections():
         model.take(deck, section)
     if deck.names:
         names = ", ".join(list(deck.names)[:5])
         source.note(f"{counted(len(deck.names), 'file')} that the deck names read with it: {names}")
-    parts = model.parts(source)
-    if not any(part.blocks for part in parts):
-        fault = f"has no surface: {counted(model.element_count, 'element')}, none with a face"
-        raise source.error(fault, "a mesh is a surface: shells, or solids with their boundary")
-    return joined_surface(source, parts)
+    return model, model.bodies(source)
 
 
-class _Instance(NamedTuple):
-    """Holds an instance: the part's name, where it stands, and what it defines itself."""
-
-    scope: Scope
-    part: str
-    place: Placement
-    section: Section
-
-
-class _Model:
-    """Holds what the keywords so far have defined."""
-
-    def __init__(self) -> None:
-        # Of a flat deck, or of the assembly.
-        self._outer = Scope()
-        self._scope = self._outer
-        self._parts: dict[str, Scope] = {}
-        self._instances: list[_Instance] = []
-        self._is_in_step = False
-        self._notes: dict[str, None] = {}
-
-    @property
-    def element_count(self) -> int:
-        """Return how many elements all parts define."""
-        scopes = [self._outer, *self._parts.values(), *(each.scope for each in self._instances)]
-        return sum(len(block.numbers) for scope in scopes for block in scope.elements)
-
-    def take(self, deck: Deck, section: Section) -> None:
-        """Take one keyword.
-
-        Raises:
-            MeshError: it is not read; with the line.
-        """
-        keyword = section.keyword
-        reader = _READERS.get(keyword)
-        if keyword in _WITH_INPUT:
-            section = deck.input_of(section)
-        if reader is not None:
-            reader(self._scope, section)
-        elif keyword in _STRUCTURE:
-            _STRUCTURE[keyword](self, section)
-        elif keyword in REFUSED:
-            what, remedy = REFUSED[keyword]
-            raise _refused(section, f"*{keyword} {what}, which is not read", remedy)
-        elif keyword in PASSED_OVER:
-            self._pass_over(section)
-        elif not self._is_in_step and not _abbreviates(keyword):
-            remedy = "write its name in full; remove it if it makes and moves no part of the mesh"
-            raise _refused(section, f"the keyword *{keyword[:40]} is not known", remedy)
-
-    def _pass_over(self, section: Section) -> None:
-        """Note keywords after which the analysis has another shape than the deck."""
-        keyword, adjust = section.keyword, section.label("ADJUST")
-        is_tie = keyword == "TIE" and adjust != "NO"
-        if is_tie or keyword == "ADJUST" or (keyword == "CONTACTPAIR" and adjust):
-            name = {"CONTACTPAIR": "CONTACT PAIR"}.get(keyword, keyword)
-            note = f"*{name} may move nodes when the analysis begins: taken where the deck has them"
-            self._notes[note] = None
-        elif keyword == "CYCLICSYMMETRYMODEL":
-            self._notes["*CYCLIC SYMMETRY MODEL: taken as the one sector that is written"] = None
-        elif keyword == "MODELCHANGE" and "REMOVE" in section.options:
-            self._notes["elements that *MODEL CHANGE removes in a step are taken"] = None
-
-    def set_step(self, section: Section) -> None:
-        """Note whether what follows is the history of an analysis, which defines no mesh."""
-        self._is_in_step = section.keyword == "STEP"
-
-    def begin_part(self, section: Section) -> None:
-        """Take *PART."""
-        check_options(section, {"NAME", "INTERNAL"})
-        name = section.label("NAME")
-        if self._scope is not self._outer or name in self._parts:
-            fault = f"*PART '{name[:40]}' begins in another part, or a second time"
-            raise _refused(section, fault, "end each part with *END PART")
-        self._scope = self._parts[name] = Scope(section.options.get("NAME", ""))
-
-    def begin_instance(self, section: Section) -> None:
-        """Take *INSTANCE."""
-        check_options(section, {"NAME", "PART"})
-        if self._scope is not self._outer or section.label("PART") not in self._parts:
-            fault = f"*INSTANCE of '{section.label('PART')[:40]}', which is no part so far"
-            raise _refused(section, fault, "define the part before the assembly")
-        self._scope = Scope(section.options.get("NAME", ""))
-        place = placement(section)
-        self._instances.append(_Instance(self._scope, section.label("PART"), place, section))
-
-    def end_scope(self, section: Section) -> None:
-        """Take *END PART or *END INSTANCE."""
-        if self._scope is self._outer:
-            raise _refused(section, f"*{section.keyword} ends what did not begin", "remove it")
-        self._scope = self._outer
-
-    def surface_by_name(self, section: Section) -> None:
-        """Take *SURFACE: a name for faces of elements, or a surface by formula."""
-        kind = "".join(section.label("TYPE").split())
-        if kind not in NAMED_SURFACES:
-            what = f"*SURFACE of type {kind[:20]} makes a surface by a formula, which is not read"
-            raise _refused(section, what, "mesh it with elements such as R3D4, or remove it")
-
-    def parts(self, source: Source) -> list[CellPart]:
-        """Return what stands in the file: instances, else parts, and what is outside of them."""
-        if self._scope is not self._outer:
-            fault = f"ends within the part or instance '{self._scope.name[:40]}'"
-            raise source.error(fault, "it was cut short: write it again")
-        for note in self._notes:
-            source.note(note)
-        found = []
-        for instance in self._instances:
-            scopes = [self._parts[instance.part], instance.scope]
-            part = cells_of(source, scopes)
-            points = instance.place.placed(part.points)
-            found.append(part._replace(name=instance.scope.name, points=points))
-        used = {instance.part for instance in self._instances}
-        left = [scope for name, scope in self._parts.items() if name not in used]
-        left = [scope for scope in left if any(block.shape.cell for block in scope.elements)]
-        if used and left:
-            names = ", ".join(f"'{scope.name}'" for scope in left[:5])
-            source.note(f"{counted(len(left), 'part')} without an instance left out: {names}")
-        elif left:
-            source.note(
-                f"{counted(len(left), 'part')} taken where written: no *INSTANCE places any"
-            )
-            found += [cells_of(source, [scope]) for scope in left]
-        return [*found, cells_of(source, [self._outer])]
-
-
-def _abbreviates(keyword: str) -> bool:
-    """Return whether a keyword begins one that is passed over, and none that is read or refused.
-
-    Keywords need not be written out as long as they can be told apart.
-    """
-    known = {*_READERS, *_STRUCTURE, *REFUSED, "INCLUDE"}
-    if any(name.startswith(keyword) for name in known):
-        return False
-    return any(name.startswith(keyword) for name in PASSED_OVER)
-
-
-def _refused(section: Section, fault: str, remedy: str) -> MeshError:
-    return section.source.error(fault, remedy, at=str(section.line))
-
-
-def _set_system(scope: Scope, section: Section) -> None:
-    scope.system = local_system(section)
-
-
-def _add_set(scope: Scope, section: Section) -> None:
-    """Keep a set for the keywords that generate; others need none."""
-    sets = scope.sets if section.keyword == "NSET" else scope.element_sets
-    sets.setdefault(section.label(section.keyword), []).append(section)
-
-
-#: What defines nodes and elements, in the part or instance it stands in.
-_READERS: dict[str, Callable[[Scope, Section], None]] = {
-    "NODE": Scope.read_nodes,
-    "ELEMENT": Scope.read_elements,
-    "NSET": _add_set,
-    "ELSET": _add_set,
-    "SYSTEM": _set_system,
-    "NGEN": generated.generate_nodes,
-    "NFILL": generated.fill_nodes,
-    "NCOPY": generated.copy_nodes,
-    "ELGEN": generated.generate_elements,
-    "ELCOPY": generated.copy_elements,
-}
-#: What divides the deck.
-_STRUCTURE: dict[str, Callable[[_Model, Section], None]] = {
-    "PART": _Model.begin_part,
-    "ENDPART": _Model.end_scope,
-    "ASSEMBLY": lambda _model, section: check_options(section, {"NAME"}),
-    "ENDASSEMBLY": lambda _model, section: check_options(section, set()),
-    "INSTANCE": _Model.begin_instance,
-    "ENDINSTANCE": _Model.end_scope,
-    "STEP": _Model.set_step,
-    "ENDSTEP": _Model.set_step,
-    "SURFACE": _Model.surface_by_name,
-}
-#: Those whose data INPUT may name a file for.
-_WITH_INPUT = frozenset(("NODE", "ELEMENT"))
+def _without_surface(source: Source, model: Model) -> Exception:
+    fault = f"has no surface: {counted(model.element_count, 'element')}, none with a face"
+    return source.error(fault, "a mesh is a surface: shells, or solids with their boundary")

@@ -16,6 +16,8 @@ from obbcli.mesh.formats.abaqus.systems import LocalSystem, from_cylindrical
 from obbcli.mesh.formats.number_rows import comma_rows, whole_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from obbcli.mesh.formats.abaqus.elements import Shape
@@ -66,6 +68,30 @@ class Scope:
         self._places: dict[int, NDArray[np.float64]] = {}
         self._elements: dict[int, tuple[Elements, int]] = {}
         self._indexed = 0, 0
+        self._kept: list[tuple[Callable[[Scope, Section], None], Section]] = []
+        #: Whether elements were given that may have faces.
+        self.has_surface = False
+        #: Whether nothing was given.
+        self.is_empty = True
+
+    def keep(self, reader: Callable[[Scope, Section], None], section: Section) -> None:
+        """Keep a keyword and what reads it until the scope is read."""
+        self._kept.append((reader, section))
+        self.is_empty = False
+        if section.keyword == "ELEMENT" and section.data.strip():
+            shape = shape_of(section.label("TYPE"))
+            self.has_surface |= shape is None or shape.cell is not None
+
+    def read(self) -> None:
+        """Read what was kept, once.
+
+        Raises:
+            MeshError: it is not read, or damaged; with the line.
+        """
+        while self._kept:
+            reader, section = self._kept[0]
+            reader(self, section)
+            del self._kept[0]
 
     def place_of(self, number: int) -> NDArray[np.float64] | None:
         """Return where a node stands that has been defined so far, (3,), or None."""

@@ -101,6 +101,18 @@ class Placement(NamedTuple):
     point: NDArray[np.float64]
     turn: NDArray[np.float64] | None
 
+    @property
+    def matrix(self) -> NDArray[np.float64] | None:
+        """The placement as a matrix, (4, 4), that is applied to columns; None: the identity."""
+        if self.turn is None and not self.shift.any():
+            return None
+        found = np.eye(4)
+        found[:3, 3] = self.shift
+        if self.turn is not None:
+            found[:3, :3] = self.turn
+            found[:3, 3] = self.turn @ (self.shift - self.point) + self.point
+        return found
+
     def placed(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return coordinates of the part, (N, 3), where the instance has them."""
         moved = places + self.shift

@@ -34,11 +34,34 @@ class CellPart(NamedTuple):
 
 
 def joined_surface(source: Source, parts: Sequence[CellPart]) -> MeshArrays:
-    """Return the surfaces of all parts, one part after the other.
+    """Return the surfaces of all parts, one part after the other; notes count all parts.
 
     Raises:
         MeshError: as in `surface`.
     """
+    points, triangles, _ = _surface_by_part(source, parts)
+    return points, triangles
+
+
+def surfaces(source: Source, parts: Sequence[CellPart]) -> list[MeshArrays]:
+    """Return the surface of each part, as it has it alone; notes count all parts.
+
+    Raises:
+        MeshError: as in `surface`.
+    """
+    _, triangles, ends = _surface_by_part(source, parts)
+    found: list[MeshArrays] = []
+    first = row = 0
+    for part, end in zip(parts, ends.tolist(), strict=True):
+        found.append((part.points, triangles[row:end] - first))
+        first, row = first + len(part.points), end
+    return found
+
+
+def _surface_by_part(
+    source: Source, parts: Sequence[CellPart]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return points and triangles of all parts in order, and where each part's triangles end."""
     points = np.concatenate([np.zeros((0, 3)), *(part.points for part in parts)])
     ends = np.cumsum([len(part.points) for part in parts])
     # A block a kind: blocks cost more than cells where a file has thousands of them.
@@ -58,4 +81,5 @@ def joined_surface(source: Source, parts: Sequence[CellPart]) -> MeshArrays:
     # One call, so that notes count all parts; it lists the flat cells of all of them first.
     triangles = surface(source, points, blocks)
     part_of = np.searchsorted(ends, triangles[:, 0], side="right")
-    return points, triangles[np.argsort(part_of, kind="stable")]
+    triangles = triangles[np.argsort(part_of, kind="stable")]
+    return points, triangles, np.cumsum(np.bincount(part_of, minlength=len(parts)))
