@@ -206,7 +206,7 @@ def measured(shape: Mesh | ObbTree, lengths: Lengths | None, name: str) -> Mesh 
 
 def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:
     """Return the parts of a mesh file that a pattern takes, as one mesh."""
-    from obbcli.mesh import load_selection
+    from obbcli.mesh.parts.load import load_selection
 
     if path.is_fifo() or _is_tree(path):
         fault = f"has no parts to take '{pattern}' from"

@@ -6,7 +6,7 @@ First room of the flow: mesh -> tree -> query -> report.
 from __future__ import annotations
 
 from obbcli.mesh.formats import known_suffixes
-from obbcli.mesh.load import load_mesh, load_mesh_bytes, load_selection
+from obbcli.mesh.load import load_mesh, load_mesh_bytes
 from obbcli.mesh.mesh import Mesh, PartRows
 from obbcli.mesh.source import check_file, digest_of, read_stream
 
@@ -18,6 +18,5 @@ __all__ = [
     "known_suffixes",
     "load_mesh",
     "load_mesh_bytes",
-    "load_selection",
     "read_stream",
 ]

@@ -12,9 +12,10 @@ import numpy as np
 from obbcli.errors import MotionError
 from obbcli.files import file_and_pattern
 from obbcli.mesh import measure
-from obbcli.mesh.load import mesh_of, read_parts
+from obbcli.mesh.parts.load import read_parts
 from obbcli.mesh.parts.placed import placed
 from obbcli.mesh.parts.selection import selected
+from obbcli.mesh.reading import mesh_of
 from obbcli.motion.body import Body
 from obbcli.motion.pose import Pose
 
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from obbcli.mesh.load import FileParts
     from obbcli.mesh.mesh import Mesh
+    from obbcli.mesh.parts.load import FileParts
     from obbcli.mesh.parts.placed import PlacedPart
 
 
@@ -196,7 +197,8 @@ class Assembly:
 def load_parts(path: str | os.PathLike[str]) -> Assembly:
     """Return the parts of a mesh file; what they hold is decoded when it is asked for.
 
-    Nodes of glTF, `o` of OBJ (`g` where no `o` stands) and solids of an ASCII STL are parts; any
+    Nodes of glTF and COLLADA, objects of 3MF, `o` of OBJ (`g` where no `o` stands), solids of an
+    ASCII STL, blocks of VTK's index, instances of Abaqus, zones of Tecplot and SU2 are parts; any
     other file is one, whose path is empty. Parts that are placed copies of one mesh share it. A
     pose turns and shifts alone: what a file mirrors or scales has a mesh of its own, in which that
     is done. All parts, placed and joined, are what `load_mesh` returns, row for row and bit by bit.
@@ -213,12 +215,9 @@ def load_parts(path: str | os.PathLike[str]) -> Assembly:
         (['nut'], 3896)
     """
     name, pattern = file_and_pattern(os.fspath(path))
-    contents = read_parts(name)
-    parts = contents.parts
-    if pattern is not None:
-        parts = selected(parts, pattern, contents.source.place)
+    contents = read_parts(name, pattern)
     maker = _Maker(contents)
-    made = [maker.part(part) for part in parts]
+    made = [maker.part(part) for part in contents.parts]
     return Assembly(made, contents.source.name, contents.sha256)
 
 

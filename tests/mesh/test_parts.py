@@ -12,7 +12,7 @@ from mesh_files.gltf_files import SQUARE, Builder, document, glb, shifted
 from mesh_files.plain_files import FILES, off
 
 from obbcli import MeshError, load_mesh, load_parts
-from obbcli.mesh.load import read_parts
+from obbcli.mesh.parts.load import read_parts
 
 TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 %d\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"

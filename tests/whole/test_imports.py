@@ -108,6 +108,7 @@ NEEDED = {
     "obbcli.mesh.load",
     "obbcli.mesh.measure",
     "obbcli.mesh.mesh",
+    "obbcli.mesh.reading",
     "obbcli.mesh.source",
     "obbcli.mesh.topology",
     "obbcli.motion",

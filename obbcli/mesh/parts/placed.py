@@ -30,12 +30,14 @@ class PlacedPart(NamedTuple):
         key: equal for parts that decode to the same arrays, which are then decoded once.
         decode: returns vertices and triangles in the part's own coordinates.
         matrix: (4, 4), applied to columns, from there to the file's world; None: the identity.
+        may_be_bare: whether it may turn out to have no triangles; it is no part of the file then.
     """
 
     path: str
     key: Hashable
     decode: Callable[[], MeshArrays]
     matrix: NDArray[np.float64] | None = None
+    may_be_bare: bool = False
 
     def placed(self) -> MeshArrays:
         """Return vertices and triangles in the file's world.

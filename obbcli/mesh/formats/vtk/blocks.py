@@ -10,7 +10,7 @@ from obbcli.mesh.parts.placed import joined
 from obbcli.mesh.source import Source
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from obbcli.mesh.source import MeshArrays
 
@@ -95,30 +95,47 @@ def read_blocks(source: Source, read: Callable[[Source], MeshArrays]) -> MeshArr
     Raises:
         MeshError: a file lies elsewhere, cannot be read or is refused; or no file is named.
     """
-    found = joined((arrays for _, arrays in blocks_of(source, read)), source)
-    source.note(f"{counted(len(block_files(source)), 'block')} taken as one surface")
+    blocks = Blocks(source, read)
+    found = joined((blocks.of(block) for block in blocks.files), source)
+    source.note(f"{counted(len(blocks.files), 'block')} taken as one surface")
     return found
 
 
-def blocks_of(
-    source: Source, read: Callable[[Source], MeshArrays]
-) -> Iterator[tuple[BlockFile, MeshArrays]]:
-    """Yield the files that an index names with their points and triangles; each is read once.
+class Blocks:
+    """Reads the files that an index names, each once.
+
+    Args:
+        source: the index, which is given their notes.
+        read: reads one of its files.
+
+    Attributes:
+        files: those that it names, in its order.
 
     Raises:
-        MeshError: as `read_blocks`.
+        MeshError: as `block_files`, or it names none.
     """
-    files = block_files(source)
-    if not files:
-        raise source.error("is an index that names no files", "a mesh is a surface of triangles")
-    read_before: dict[str, MeshArrays] = {}
-    for block in files:
-        if block.file not in read_before:
-            part = block_source(source, block)
-            read_before[block.file] = read(part)
+
+    def __init__(self, source: Source, read: Callable[[Source], MeshArrays]) -> None:
+        self._source = source
+        self._read = read
+        self._found: dict[str, MeshArrays] = {}
+        self.files = block_files(source)
+        if not self.files:
+            remedy = "a mesh is a surface of triangles"
+            raise source.error("is an index that names no files", remedy)
+
+    def of(self, block: BlockFile) -> MeshArrays:
+        """Return points and triangles of a file.
+
+        Raises:
+            MeshError: it lies elsewhere, cannot be read or is refused.
+        """
+        if block.file not in self._found:
+            part = block_source(self._source, block)
+            self._found[block.file] = self._read(part)
             for note in part.notes:
-                source.note(f"{part.name}: {note}")
-        yield block, read_before[block.file]
+                self._source.note(f"{part.name}: {note}")
+        return self._found[block.file]
 
 
 def block_source(source: Source, block: BlockFile) -> Source:

@@ -5,31 +5,28 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from obbcli.mesh.formats.vtk.blocks import blocks_of
+from obbcli.mesh.formats.vtk.blocks import Blocks
 from obbcli.mesh.formats.vtk.reader import is_index, read_vtk, read_xml
 from obbcli.mesh.parts.placed import PlacedPart, UniquePaths, whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from obbcli.mesh.source import MeshArrays, Source
+    from obbcli.mesh.source import Source
 
 
 def parts_vtk(source: Source) -> Iterator[PlacedPart]:
-    """Yield the blocks of an index that have a surface, or the whole of any other file.
+    """Yield the blocks of an index, or the whole of any other file.
 
     Raises:
-        MeshError: as `read_vtk`; all blocks are read, so that their notes are told.
+        MeshError: as `read_vtk`; what is wrong with a block's own file, when it is decoded.
     """
     if not is_index(source):
         yield from whole(read_vtk, source)
         return
+    blocks = Blocks(source, read_xml)
     paths = UniquePaths()
-    for block, arrays in list(blocks_of(source, read_xml)):
-        if len(arrays[1]):
-            path = paths.take("/".join(block.path))
-            yield PlacedPart(path, block.file, partial(_same, arrays))
-
-
-def _same(arrays: MeshArrays) -> MeshArrays:
-    return arrays
+    for block in blocks.files:
+        path = paths.take("/".join(block.path))
+        # Only the file itself says whether it has a surface.
+        yield PlacedPart(path, block.file, partial(blocks.of, block), may_be_bare=True)
