@@ -38,6 +38,8 @@ class Collision:
         stats: what the question cost.
         contained: of solids that do not touch, `"a"` where A or a connected part of it lies inside
             B, else `"b"` where B or a part of it lies inside A. None elsewhere.
+        part_a: path of the part of A that the witness is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that it is of, likewise.
     """
 
     status: Status
@@ -46,6 +48,8 @@ class Collision:
     error_bound: float
     stats: QueryStats
     contained: Inner | None = None
+    part_a: str | None = None
+    part_b: str | None = None
 
     def __init__(
         self,
@@ -55,6 +59,8 @@ class Collision:
         error_bound: float,
         stats: QueryStats,
         contained: Inner | None = None,
+        part_a: str | None = None,
+        part_b: str | None = None,
     ) -> None:
         # The fields are set past the frozen dataclass, whose own way takes longer than a question.
         fields = vars(self)
@@ -64,6 +70,8 @@ class Collision:
         fields["error_bound"] = error_bound
         fields["stats"] = stats
         fields["contained"] = contained
+        fields["part_a"] = part_a
+        fields["part_b"] = part_b
 
     @classmethod
     def at_rest(cls, found: Found, load: float = 0.0) -> Collision:

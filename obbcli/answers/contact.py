@@ -50,6 +50,8 @@ class Contact:
         error_bound: mesh units; how far apart the surfaces can be although contact is said; of a
             sampled answer also by how much any point's path relative to the other body was off the
             true one, up to the contact. 0 where exact.
+        part_a: path of the part of A that `triangle_a` is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that `triangle_b` is of, likewise.
     """
 
     status: Status
@@ -69,6 +71,8 @@ class Contact:
     contained: Inner | None = None
     approximate: bool = False
     error_bound: float = 0.0
+    part_a: str | None = None
+    part_b: str | None = None
 
     @property
     def collides(self) -> bool:

@@ -23,6 +23,8 @@ class Distance:
         triangle_a: row of A's mesh file that `point_a` lies in.
         triangle_b: row of B's mesh file that `point_b` lies in.
         stats: what the question cost.
+        part_a: path of the part of A that `triangle_a` is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that `triangle_b` is of, likewise.
     """
 
     distance: float
@@ -32,6 +34,8 @@ class Distance:
     triangle_a: int
     triangle_b: int
     stats: QueryStats
+    part_a: str | None = None
+    part_b: str | None = None
 
     def __init__(
         self,
@@ -43,6 +47,8 @@ class Distance:
         triangle_a: int,
         triangle_b: int,
         stats: QueryStats,
+        part_a: str | None = None,
+        part_b: str | None = None,
     ) -> None:
         # The fields are set past the frozen dataclass, as in `Collision`.
         fields = vars(self)
@@ -53,3 +59,5 @@ class Distance:
         fields["triangle_a"] = triangle_a
         fields["triangle_b"] = triangle_b
         fields["stats"] = stats
+        fields["part_a"] = part_a
+        fields["part_b"] = part_b

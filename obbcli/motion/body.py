@@ -81,8 +81,12 @@ class Body:
 
     @cached_property
     def at_rest(self) -> kernels.Placed | None:
-        """The same of a body that does not move; None of others."""
-        return self.placed if self.motion.is_at_rest else None
+        """The same of a body that does not move.
+
+        None of others, and where a tree is labelled, as questions have to look at that first.
+        """
+        is_told = self.motion.is_at_rest and not getattr(self.shape, "is_labelled", False)
+        return self.placed if is_told else None
 
 
 def pivot_of(body: Body, surface: Surface) -> NDArray[np.float64]:

@@ -83,7 +83,8 @@ def collide_pair(pair: PairQuestion, *, solid: bool) -> Collision:
         found = kernels.collide(here, there, limits_of(accuracy))
     except (ValueError, kernels.TreeError) as fault:
         raise refused(pair.trees, fault) from fault
-    return Collision.at_rest(found, pair.load_seconds)
+    answer = Collision.at_rest(found, pair.load_seconds)
+    return pair.with_parts(answer, answer.witness)
 
 
 def collision_of(found: FirstContact) -> Collision:
@@ -96,4 +97,6 @@ def collision_of(found: FirstContact) -> Collision:
         error_bound=found.error_bound,
         contained=found.contained,
         stats=found.stats,
+        part_a=found.part_a,
+        part_b=found.part_b,
     )

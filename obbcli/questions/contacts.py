@@ -96,7 +96,8 @@ def search_contacts(pair: PairQuestion, search: Search) -> Iterator[Contact]:
     """
     _refuse_sampled(pair.accuracy)
     found = (_of_motion if pair.is_steady else _of_path)(pair, search)
-    return takewhile(lambda contact: _low(contact) <= search.end, found)
+    named = (pair.with_parts(one, (one.triangle_a, one.triangle_b)) for one in found)
+    return takewhile(lambda contact: _low(contact) <= search.end, named)
 
 
 def _low(contact: Contact) -> float:

@@ -77,7 +77,7 @@ def measure(pair: PairQuestion) -> tuple[Distance, bool]:
             trees, counts, {"load": pair.load_seconds, "query": time.perf_counter() - start}
         ),
     )
-    return answer, is_complete
+    return pair.with_parts(answer, (triangle_a, triangle_b)), is_complete
 
 
 def _query(pair: PairQuestion) -> kernels.DistanceQuery:

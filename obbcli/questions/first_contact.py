@@ -240,7 +240,9 @@ class Query:
         solids = self._solids
         is_contained = solids is not None and solids.contained is not None
         found = solids.answer() if solids and is_contained else self._search.contact()
-        return FirstContact.of(found, stats_of(self._pair.trees, self.counts, dict(self._seconds)))
+        stats = stats_of(self._pair.trees, self.counts, dict(self._seconds))
+        answer = FirstContact.of(found, stats)
+        return self._pair.with_parts(answer, (answer.triangle_a, answer.triangle_b))
 
 
 def first_contact(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import MeshError, MotionError
@@ -16,12 +16,16 @@ from obbcli.tree.tree import ObbTree, load_tree
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from obbcli.answers.collision import Collision
+    from obbcli.answers.contact import Contact, FirstContact
+    from obbcli.answers.distance import Distance
     from obbcli.motion.body import Shape
 
 # Of the duration: the width asked of a bracket where the caller asks for none.
 _TIME_TOLERANCE = 1e-9
 _EXACT = Accuracy()
 
+_Answer = TypeVar("_Answer", "Collision", "Contact", "FirstContact", "Distance")
 Trees = tuple[ObbTree, ObbTree]
 
 
@@ -70,7 +74,6 @@ class PairQuestion(NamedTuple):
         start = perf_counter()
         trees = trees_of(bodies)
         loaded = perf_counter() - start
-        check_units({"A": trees[0].unit, "B": trees[1].unit})
         resolved = _resolved(bodies[0]), _resolved(bodies[1])
         return cls(resolved, trees, end, _EXACT if accuracy is None else accuracy, loaded)
 
@@ -96,6 +99,23 @@ class PairQuestion(NamedTuple):
         if ma.is_at_rest or mb.is_at_rest or ma.velocities != mb.velocities:
             return False
         return not ma.is_turning or bool((pivot_of(a, tree_a) == pivot_of(b, tree_b)).all())
+
+    def with_parts(
+        self, answer: _Answer, triangles: tuple[int | None, int | None] | None
+    ) -> _Answer:
+        """Return a new answer, which names the selected parts that its triangles are of.
+
+        Args:
+            answer: that nobody else has yet.
+            triangles: of A and B; None where it tells none.
+        """
+        a, b = self.trees
+        if triangles is not None and (a.parts or b.parts):
+            # Past the frozen dataclass, whose own way makes a second answer.
+            fields = vars(answer)
+            fields["part_a"] = a.part_of(triangles[0])
+            fields["part_b"] = b.part_of(triangles[1])
+        return answer
 
     @property
     def time_tolerance(self) -> float:
@@ -127,19 +147,34 @@ def check_units(units: dict[str, str | None]) -> None:
             raise MeshError("unit", fault, "bring both to one: --unit U, or Mesh.in_unit")
 
 
+def check_pair_units(trees: Trees) -> None:
+    """Refuse trees of A and B that state different units of length.
+
+    Raises:
+        MeshError: they do.
+    """
+    unit, other = trees[0].unit, trees[1].unit
+    # Compared in place: a question of some microseconds passes here.
+    if unit != other and unit is not None and other is not None:
+        check_units({"A": unit, "B": other})
+
+
 def trees_of(bodies: tuple[Body, Body]) -> Trees:
     """Return the trees of two bodies, one for both where they share a shape.
 
     Raises:
-        MeshError: a mesh cannot be read or is refused.
+        MeshError: a mesh cannot be read or is refused, or the two state different units.
         TreeFileError: a tree file is damaged.
         OSError: a file cannot be read.
     """
     a, b = bodies[0].shape, bodies[1].shape
     if isinstance(a, ObbTree) and isinstance(b, ObbTree):
-        return a, b
-    tree = _tree(a)
-    return tree, tree if b is a else _tree(b)
+        trees = a, b
+    else:
+        tree = _tree(a)
+        trees = tree, tree if b is a else _tree(b)
+    check_pair_units(trees)
+    return trees
 
 
 def _tree(shape: Shape) -> ObbTree:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.answers.status import Status
-from obbcli.report.record import answer_document
+from obbcli.report.record import answer_document, part_names
 from obbcli.report.rows import (
     as_sampled,
     contained_rows,
@@ -52,6 +52,7 @@ def collide_record(
         "approximate": answer.approximate,
         "error_bound": float(answer.error_bound),
         "contained": answer.contained,
+        **part_names(answer, setting.sources),
     }
     if pairs is not None:
         result["pairs"] = pairs[0].tolist()

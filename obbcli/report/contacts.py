@@ -6,12 +6,13 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.answers.contact import Contact
+from obbcli.report.record import part_names
 from obbcli.report.table import Table, count, point
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
-    from obbcli.report.record import Record
+    from obbcli.report.record import Record, Source
 
 _COLUMNS = ("time [s]", "triangle of A", "triangle of B", "feature", "point")
 _IDS = ("triangle_a", "triangle_b")
@@ -31,19 +32,27 @@ class Listing(NamedTuple):
     unresolved_after: float | None = None
 
 
-def contacts_part(listing: Listing) -> Record:
-    """Return what a result says of a list."""
+def contacts_part(listing: Listing, sources: Sequence[Source]) -> Record:
+    """Return what a result says of a list about the files of A and B."""
     return {
-        "contacts": [contact_part(contact) for contact in listing.contacts],
+        "contacts": [contact_part(contact, sources) for contact in listing.contacts],
         "contacts_complete": listing.is_complete,
         "contacts_unresolved_after": listing.unresolved_after,
     }
 
 
-def contact_part(contact: Contact) -> Record:
-    """Return what a record says of a contact."""
-    values = {field.name: getattr(contact, field.name) for field in fields(Contact)}
-    return values | {"status": contact.status.value}
+_FIELDS = [field.name for field in fields(Contact) if field.name not in ("part_a", "part_b")]
+
+
+def contact_part(contact: Contact, sources: Iterable[Source]) -> Record:
+    """Return what a record says of a contact.
+
+    Args:
+        contact: which may be an answer of more fields, of which it says nothing.
+        sources: the files of A and B.
+    """
+    values = {name: getattr(contact, name) for name in _FIELDS}
+    return values | {"status": contact.status.value} | part_names(contact, sources)
 
 
 def contacts_table(result: Record) -> Table:

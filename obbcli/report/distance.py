@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from obbcli.report.record import answer_document
+from obbcli.report.record import answer_document, part_names
 from obbcli.report.rows import cost_rows, part_rows, source_rows
 from obbcli.report.table import Table, point
 
@@ -30,6 +30,7 @@ def distance_record(setting: Setting, answer: Distance, *, is_complete: bool) ->
         "triangle_a": answer.triangle_a,
         "triangle_b": answer.triangle_b,
         "complete": is_complete,
+        **part_names(answer, setting.sources),
     }
     return answer_document("distance", setting, result, answer.stats)
 

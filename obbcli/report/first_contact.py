@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from obbcli.report.contacts import contacts_bare, contacts_part, contacts_table
+from obbcli.report.contacts import contact_part, contacts_bare, contacts_part, contacts_table
 from obbcli.report.record import answer_document
 from obbcli.report.rows import (
     as_sampled,
@@ -38,12 +37,10 @@ def first_contact_record(
         answer: what came out; its fields become the result, but for the stats.
         listing: the contacts of pairs; None where they were not asked for.
     """
-    values = {field.name: getattr(answer, field.name) for field in fields(answer)}
-    stats = values.pop("stats")
-    result = values | {"status": answer.status.value}
+    result = contact_part(answer, setting.sources)
     if listing is not None:
-        result |= contacts_part(listing)
-    return answer_document("first-contact", setting, result, stats)
+        result |= contacts_part(listing, setting.sources)
+    return answer_document("first-contact", setting, result, answer.stats)
 
 
 def first_contact_tables(record: Record) -> list[Table]:

@@ -6,7 +6,6 @@ A record is a dict of plain values in a fixed order; JSON and tables are both ma
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -19,7 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
+    from obbcli.answers.collision import Collision
+    from obbcli.answers.contact import Contact
     from obbcli.answers.counts import QueryStats
+    from obbcli.answers.distance import Distance
     from obbcli.mesh import Mesh, PartRows
     from obbcli.motion.body import Body
     from obbcli.tree.head import TreeHead
@@ -66,13 +68,6 @@ class Source(NamedTuple):
             said["unit"] = self.unit
         return said | ({"parts": [rows._asdict() for rows in self.parts]} if self.parts else {})
 
-    def part_of(self, triangle: int | None) -> str | None:
-        """Return the path of the selected part that a row is of; None where there is none."""
-        if triangle is None:
-            return None
-        place = bisect_right(self.parts, triangle, key=lambda rows: rows.first_triangle)
-        return self.parts[place - 1].path if self.parts else None
-
 
 class Setting(NamedTuple):
     """What a question about two bodies was asked with.
@@ -103,8 +98,6 @@ def _head(name: str) -> Record:
 def answer_document(command: str, setting: Setting, result: Record, stats: QueryStats) -> Record:
     """Return the record of an answer about two bodies."""
     a, b = setting.sources
-    if a.parts or b.parts:
-        name_parts(result, a, b)
     return document(
         command,
         {"a": a.part(), "b": b.part()},
@@ -116,12 +109,16 @@ def answer_document(command: str, setting: Setting, result: Record, stats: Query
     )
 
 
-def name_parts(result: Record, a: Source, b: Source) -> None:
-    """Add `part_a` and `part_b` to an answer and to each contact that it lists."""
-    rows = result.get("witness") or (result.get("triangle_a"), result.get("triangle_b"))
-    result["part_a"], result["part_b"] = a.part_of(rows[0]), b.part_of(rows[1])
-    for contact in result.get("contacts", ()):
-        name_parts(contact, a, b)
+def part_names(answer: Collision | Contact | Distance, sources: Iterable[Source]) -> Record:
+    """Return the selected parts that an answer names; no keys where no part was selected.
+
+    Args:
+        answer: which names them.
+        sources: the files of A and B.
+    """
+    if not any(source.parts for source in sources):
+        return {}
+    return {"part_a": answer.part_a, "part_b": answer.part_b}
 
 
 def motion_part(bodies: tuple[Body, Body], duration: float) -> Record:

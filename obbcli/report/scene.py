@@ -12,7 +12,6 @@ from obbcli.report.record import (
     Source,
     body_part,
     document,
-    name_parts,
     note_rows,
     seconds_part,
 )
@@ -20,7 +19,7 @@ from obbcli.report.rows import triangle_tests
 from obbcli.report.table import Table, count, point, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from obbcli.report.record import Record
     from obbcli.scene.bodies import Ignore
@@ -75,8 +74,9 @@ def scene_record(
         with_motion: whether to say where bodies are and how they move: centroids cost time.
     """
     places = {mesh.path: place for place, mesh in enumerate(meshes)}
-    result = _result_part(asked, answer)
-    _name_parts(result["contacts"], asked, {mesh.path: mesh for mesh in meshes})
+    by_path = {mesh.path: mesh for mesh in meshes}
+    files = {body.name: by_path.get(str(body.body.shape)) for body in asked.bodies}
+    result = _result_part(asked, answer, files)
     stats = answer.stats._asdict() | {"seconds": seconds_part(answer.stats.seconds)}
     stats["bodies"] = [body._asdict() for body in answer.stats.bodies]
     return document(
@@ -91,15 +91,6 @@ def scene_record(
         result=result,
         stats=stats,
     )
-
-
-def _name_parts(contacts: list[Record], asked: ScenePairs, meshes: dict[str, Source]) -> None:
-    """Add the parts to contacts of bodies that a pattern selected."""
-    files = {body.name: meshes.get(str(body.body.shape)) for body in asked.bodies}
-    for contact in contacts:
-        a, b = files[contact["body_a"]], files[contact["body_b"]]
-        if a is not None and b is not None and (a.parts or b.parts):
-            name_parts(contact, a, b)
 
 
 def mesh_paths(asked: ScenePairs) -> list[str]:
@@ -123,7 +114,14 @@ def _bodies_part(asked: ScenePairs, places: dict[str, int], *, with_motion: bool
     ]
 
 
-def _result_part(asked: ScenePairs, answer: Answer) -> Record:
+def _contact_part(found: SceneContact, files: Mapping[str, Source | None]) -> Record:
+    """Return what a result says of a contact; bodies that are parts of the scene have no file."""
+    sources = [file for file in (files[found.body_a], files[found.body_b]) if file is not None]
+    names = {"body_a": found.body_a, "body_b": found.body_b}
+    return names | contact_part(found.contact, sources)
+
+
+def _result_part(asked: ScenePairs, answer: Answer, files: Mapping[str, Source | None]) -> Record:
     touching = [found for found in answer.contacts if found.status is not Status.UNRESOLVED]
     unresolved = [found for found in answer.contacts if found.status is Status.UNRESOLVED]
     status = Status.SEPARATED if not touching else touching[0].status
@@ -133,10 +131,7 @@ def _result_part(asked: ScenePairs, answer: Answer) -> Record:
         "time": touching[0].time if touching else None,
         "approximate": any(found.contact.approximate for found in touching)
         or (is_sampled and answer.stats.apart_by_trees > 0),
-        "contacts": [
-            {"body_a": found.body_a, "body_b": found.body_b} | contact_part(found.contact)
-            for found in touching
-        ],
+        "contacts": [_contact_part(found, files) for found in touching],
         "contacts_complete": answer.is_complete,
         "unresolved": [
             {"body_a": found.body_a, "body_b": found.body_b, "time": found.time}

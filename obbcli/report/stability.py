@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
-from obbcli.answers.contact import Contact
+from obbcli.report.contacts import contact_part
 from obbcli.report.record import document, finite
-from obbcli.report.rows import source_rows
+from obbcli.report.rows import part_rows, source_rows
 from obbcli.report.table import Table, count, seconds
 
 if TYPE_CHECKING:
@@ -40,10 +40,9 @@ class Studied(NamedTuple):
 def stability_record(setting: Setting, studied: Studied) -> Record:
     """Return the record of a study."""
     answer, rows = studied.stability.answer, studied.stability.rows
-    values = {field.name: getattr(answer, field.name) for field in fields(Contact)}
     a, b = setting.sources
     result = {
-        "answer": values | {"status": answer.status.value},
+        "answer": contact_part(answer, setting.sources),
         "extreme_count": studied.planned,
         "tried_count": len(rows),
         "broken_count": len(studied.stability.broken),
@@ -99,6 +98,7 @@ def stability_tables(record: Record) -> list[Table]:
     heads = [
         *source_rows(record),
         ("answer", f"{answer['status']}{time}"),
+        *part_rows(answer),
         ("extremes", f"{count(result['tried_count'])} of {count(result['extreme_count'])}{cut}"),
         ("broken", count(result["broken_count"])),
         ("time", seconds(record["stats"]["seconds"]["total"])),

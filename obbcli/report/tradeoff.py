@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from obbcli.accuracy import ASPECTS, Accuracy
-from obbcli.report.record import document, finite
+from obbcli.report.record import document, finite, part_names
 from obbcli.tree.options import DEFAULT_BUILD
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def tradeoff_record(
         limits: what a setting is wanted for.
         is_interrupted: whether Ctrl-C ended it.
     """
-    rows = [_row_part(row, wording) for row in found.rows]
+    rows = [_row_part(row, wording) | part_names(row.answer, setting.sources) for row in found.rows]
     reference = found.reference
     result = {
         "reference": {
@@ -89,6 +89,7 @@ def tradeoff_record(
             "time_bounds": reference.time_bounds,
             "evidence": reference.evidence,
             "distance": reference.distance,
+            **part_names(reference, setting.sources),
         },
         "rows": rows,
         "unreached": [_unreached_part(one, wording) for one in found.unreached],

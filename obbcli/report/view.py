@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.report.contacts import contact_part
 from obbcli.report.first_contact import first_contact_bare, first_contact_tables
 from obbcli.report.record import answer_document, document, seconds_part
 from obbcli.report.rows import source_rows
@@ -91,8 +91,6 @@ def contact_record(
         output: where it was drawn.
         moment: what was drawn of it.
     """
-    values = {field.name: getattr(answer, field.name) for field in fields(answer)}
-    stats = values.pop("stats")
     drawn = output.part() | {
         "what": "contact",
         "time": moment.time,
@@ -100,8 +98,8 @@ def contact_record(
         "ghosts_of": [name.lower() for name in moment.moving],
         "marks": marks_of(answer),
     }
-    result = values | {"status": answer.status.value, "drawn": drawn}
-    return answer_document("view", setting, result, stats)
+    result = contact_part(answer, setting.sources) | {"drawn": drawn}
+    return answer_document("view", setting, result, answer.stats)
 
 
 def marks_of(answer: FirstContact) -> list[str]:

@@ -38,6 +38,16 @@ class SceneContact:
         assert self.contact.time is not None
         return self.contact.time
 
+    @property
+    def part_a(self) -> str | None:
+        """The path of the part of `body_a` that touches, where `FILE#PATTERN` selected parts."""
+        return self.contact.part_a
+
+    @property
+    def part_b(self) -> str | None:
+        """The path of the part of `body_b` that touches, likewise."""
+        return self.contact.part_b
+
 
 class BodyStats(NamedTuple):
     """What of a body was used.

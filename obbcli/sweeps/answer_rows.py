@@ -19,7 +19,11 @@ from obbcli.answers.status import Status
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from obbcli.answers.contact import FirstContact
+    from obbcli.questions.pair_question import Trees
+    from obbcli.tree.tree import ObbTree
 
     Answers = np.ndarray[tuple[int], np.dtype[np.void]]
 
@@ -34,6 +38,7 @@ _WORDS = {"status": tuple(status.value for status in STATUSES)} | {
 }
 """By their codes in the kernels; empty where none applies."""
 _BOUNDS = ("time_lo", "time_hi")
+_PARTS = ("part_a", "part_b")
 _FORMATS: dict[object, tuple[str] | tuple[str, int]] = {
     float: ("f8",),
     int: ("i8",),
@@ -58,8 +63,12 @@ which body is inside the other: kernels are asked about surfaces."""
 _TOLD = frozenset(RAW.names or ())
 
 
-def _row() -> np.dtype[np.void]:
-    """Return the columns: those of `Contact` that kernels tell, flags behind the others, counts."""
+def _row(parts: Sequence[str] = ("U1", "U1")) -> np.dtype[np.void]:
+    """Return the columns: those of `Contact`, flags behind the others, counts.
+
+    Args:
+        parts: formats of `part_a` and `part_b`.
+    """
     columns: list[Any] = []
     flags: list[Any] = []
     for name, kind, _ in _FIELDS:
@@ -69,11 +78,13 @@ def _row() -> np.dtype[np.void]:
             columns.append((name, f"U{max(map(len, _WORDS[name]))}"))
         elif name == "time" or name in _TOLD:
             (flags if kind is bool else columns).append((name, *_FORMATS[kind]))
+        elif name in _PARTS:
+            columns.append((name, parts[_PARTS.index(name)]))
     return np.dtype([*columns, *flags, *((name, "u8") for name in Counts._fields)])
 
 
 ROW = _row()
-"""A row of what `sweep` returns."""
+"""A row of what `sweep` returns; paths of parts are as wide as the longest."""
 
 
 def of_kernels(found: object) -> Answers:
@@ -85,13 +96,32 @@ def of_kernels(found: object) -> Answers:
     return rows
 
 
-def as_rows(raw: Answers) -> Answers:
-    """Return the answers as `sweep` gives them: words spelled out."""
-    rows = np.empty(len(raw), ROW)
-    for name in ROW.names or ():
+def as_rows(raw: Answers, trees: Trees) -> Answers:
+    """Return the answers as `sweep` gives them: words spelled out, selected parts by their paths.
+
+    Args:
+        raw: rows of `RAW`.
+        trees: of A and B.
+    """
+    parts = [
+        _part_column(tree, raw[f"triangle_{side}"]) for side, tree in zip("ab", trees, strict=True)
+    ]
+    rows = np.empty(len(raw), _row([column.dtype.str for column in parts]))
+    for name, column in zip(_PARTS, parts, strict=True):
+        rows[name] = column
+    for name in set(ROW.names or ()) - set(_PARTS):
         column = raw[_BOUNDS[0] if name == "time" else name]
         rows[name] = np.array(_WORDS[name])[column] if name in _WORDS else column
     return rows
+
+
+def _part_column(tree: ObbTree, triangles: NDArray[np.int64]) -> NDArray[np.str_]:
+    """Return the path of the selected part that each triangle is of; empty where there is none."""
+    paths = np.array([*(rows.path for rows in tree.parts), ""])
+    firsts = [rows.first_triangle for rows in tree.parts]
+    # Of -1, no triangle, that is the last of them.
+    column: NDArray[np.str_] = paths[np.searchsorted(firsts, triangles, side="right") - 1]
+    return column
 
 
 def write_contact(raw: Any, contact: Contact) -> None:
@@ -117,12 +147,20 @@ def write_answer(raw: Any, answer: FirstContact) -> None:
         raw[name] = count
 
 
-def as_results(raw: Answers) -> list[dict[str, Any]]:
+def as_results(raw: Answers, trees: Trees) -> list[dict[str, Any]]:
     """Return each answer as the documents of `first-contact` have it, and its counters as stats.
 
     Of a refused row there is nothing to say: {}.
+
+    Args:
+        raw: rows of `RAW`.
+        trees: of A and B.
     """
-    columns = {field.name: _told(raw, field.name) for field in _FIELDS}
+    columns = {field.name: _told(raw, field.name) for field in _FIELDS if field.name not in _PARTS}
+    if any(tree.parts for tree in trees):
+        for name, side, tree in zip(_PARTS, "ab", trees, strict=True):
+            rows_of_side = raw[f"triangle_{side}"].tolist()
+            columns[name] = [tree.part_of(row) if row >= 0 else None for row in rows_of_side]
     counts = zip(*(raw[name].tolist() for name in Counts._fields), strict=True)
     columns["stats"] = [dict(zip(Counts._fields, row, strict=True)) for row in counts]
     rows = zip(*columns.values(), strict=True)

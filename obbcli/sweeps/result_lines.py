@@ -56,7 +56,7 @@ def answer_rows(trees: Trees, rows: Sequence[Row], setting: SweepSetting, thread
             results[index] = error_part(refusal)
     outcome = answer_questions(trees, [question for _, question in asked], setting, threads)
     for place, ((index, _), answer) in enumerate(
-        zip(asked, as_results(outcome.answers), strict=True)
+        zip(asked, as_results(outcome.answers, trees), strict=True)
     ):
         fault = outcome.errors.get(place)
         if fault is None:

@@ -69,7 +69,8 @@ def sweep(
         `contained`, `point`, `point_a`, `point_b`, `normal`, `normal_a`, `normal_b` (3,),
         `triangle_a`, `triangle_b`, `distance`, `error_bound`, `approximate`, and the counters
         `box_tests`, `triangle_tests`, `exact_triangle_tests`, `pops`. NaN, or -1 of triangles,
-        where a field does not apply.
+        where a field does not apply. `part_a` and `part_b` are empty unless `FILE#PATTERN` selected
+        parts.
 
     Raises:
         MotionError: motions or durations are no numbers or of another shape, a body moves by itself
@@ -97,7 +98,7 @@ def sweep(
     outcome = question.answer(accuracy, thread_count(threads))
     for row, fault in sorted(outcome.errors.items()):
         raise type(fault)(f"row {row}: {fault.where}", fault.fault, fault.remedy)
-    return as_rows(outcome.answers)
+    return as_rows(outcome.answers, trees)
 
 
 class _Column(NamedTuple):

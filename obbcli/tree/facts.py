@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -41,18 +42,30 @@ class Level(NamedTuple):
 
 
 class TreeFacts:
-    """What is known of a tree, whether it grows, is whole, or is read from a file."""
+    """What is known of a tree, whether it grows, is whole, or is read from a file.
+
+    Attributes:
+        unit: the length of 1 that the mesh file states, such as `"m"`; None where it states none.
+        parts: the parts of the mesh file that were selected, with their rows; as `mesh`.
+    """
 
     def __init__(self, made: AnyTree, path: Path | None = None) -> None:
         self._made = made
         self._path = path
         # What questions ask; no property, as these cost more than a test of two boxes.
         self.kernel = made.kernel
+        self.unit: str | None = made.description.unit
+        self.parts: tuple[PartRows, ...] = made.description.parts
+
+    @property
+    def is_labelled(self) -> bool:
+        """Whether a question compares its unit or names its parts, which the kernels do not."""
+        return self.unit is not None or bool(self.parts)
 
     @cached_property
-    def at_rest(self) -> kernels.Placed:
-        """The tree as its file has it, as the kernels see it: that of a body without a motion."""
-        return kernels.Placed(self.kernel, Pose().kernel)
+    def at_rest(self) -> kernels.Placed | None:
+        """The tree as its file has it, as the kernels see it; None where it is labelled."""
+        return None if self.is_labelled else kernels.Placed(self.kernel, Pose().kernel)
 
     @property
     def place(self) -> str:
@@ -186,15 +199,15 @@ class TreeFacts:
         """What of the mesh file was taken with a change, a sentence each; as `mesh`."""
         return self._made.description.notes
 
-    @property
-    def unit(self) -> str | None:
-        """The length of 1 that the mesh file states, such as `"m"`; None where it states none."""
-        return self._made.description.unit
+    def part_of(self, triangle: int | None) -> str | None:
+        """Return the path of the selected part that a triangle is of.
 
-    @property
-    def parts(self) -> tuple[PartRows, ...]:
-        """The parts of the mesh file that were selected, with their rows; as `mesh`."""
-        return self._made.description.parts
+        None where all of the file was taken, or of no triangle.
+        """
+        if triangle is None or not self.parts:
+            return None
+        place = bisect_right(self.parts, triangle, key=lambda rows: rows.first_triangle)
+        return self.parts[place - 1].path
 
     @property
     def tool_version(self) -> str:

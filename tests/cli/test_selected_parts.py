@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
-from mesh_files.cube_files import cube, obj
+from claims.schemas import require_valid, require_valid_lines
+from mesh_files.cube_files import objects
 
 from obbcli import Scene, load_mesh
-
-
-def objects(**shifts):
-    """Return an OBJ file of unit cubes by name, each shifted along x."""
-    lines = []
-    for count, (name, x) in enumerate(shifts.items()):
-        lines.append(f"o {name}")
-        for line in obj(cube((x, 0, 0))).splitlines():
-            letter, *numbers = line.split()
-            if letter == "f":
-                numbers = [str(int(number) + 8 * count) for number in numbers]
-            lines.append(" ".join([letter, *numbers]))
-    return "\n".join(lines) + "\n"
 
 
 @pytest.fixture
@@ -99,6 +89,51 @@ def test_every_command_takes_a_selection(robot, obbtree):
     answers = obbtree("sweep", *pair, "q.csv", "-o", "r.jsonl", "--duration", 1, "--quiet")
     assert answers.code == 0
     assert len((robot / "r.jsonl").read_text().splitlines()) == 3
+
+
+def test_rows_of_sweeps_name_the_parts(robot, obbtree):
+    (robot / "q.csv").write_text("vel\n-1 0 0\n-8.5 0 0\nfast\n")
+    words = "q.csv", "-o", "r.jsonl", "--quiet", "--force"
+
+    obbtree("sweep", "robot.obj#tip", "robot.obj#[ab]*", *words)
+    text = (robot / "r.jsonl").read_text()
+    apart, meets, refused = [json.loads(line) for line in text.splitlines()[1:]]
+    obbtree("sweep", "robot.obj", "robot.obj", *words)
+    whole = (robot / "r.jsonl").read_text()
+
+    assert (apart["part_a"], apart["part_b"]) == (None, None)
+    assert (meets["part_a"], meets["part_b"]) == ("tip", "arm")
+    assert "part_a" not in refused
+    assert "part_a" not in whole
+    require_valid_lines(text)
+    require_valid_lines(whole)
+
+
+def test_studies_and_pictures_name_the_parts(robot, obbtree):
+    pair = "robot.obj#tip", "robot.obj#[ab]*", "--vel", -8.5, 0, 0, "--json"
+
+    trade = obbtree("tradeoff", *pair, "--budget", "0.5").json
+    held = obbtree("stability", *pair).json
+    view = obbtree("view", *pair, "-o", "view.glb").json
+
+    reference, rows = trade["result"]["reference"], trade["result"]["rows"]
+    for answer in (reference, held["result"]["answer"], view["result"]):
+        assert (answer["part_a"], answer["part_b"]) == ("tip", "arm")
+    assert all("part_a" in row for row in rows)
+    for document in (trade, held, view):
+        require_valid(document)
+
+
+def test_every_document_of_a_selection_is_as_its_schema_says(robot, obbtree):
+    pair = "robot.obj#[bt]*", "robot.obj#[at]*"
+    (robot / "s.toml").write_text(
+        "".join(f'[[body]]\nname = "{name}"\nmesh = "{name}"\n' for name in pair)
+    )
+
+    require_valid(obbtree("collide", *pair, "--json").json)
+    require_valid(obbtree("first-contact", *pair, "--all-contacts", "--json").json)
+    require_valid(obbtree("distance", *pair, "--json").json)
+    require_valid(obbtree("scene", "s.toml", "--json").json)
 
 
 def test_sweep_of_another_selection_is_not_resumed(robot, obbtree):

@@ -85,6 +85,19 @@ def test_trees_keep_the_unit_and_refuse_another(files, obbtree):
     assert "A is in mm, B in m; bring both to one: --unit U" in mixed.err
 
 
+def test_every_command_refuses_two_units(files, obbtree):
+    obbtree("build", "m.glb", "--unit", "mm", "-o", "mm.obbt")
+    (files / "q.csv").write_text("vel\n0 0 0\n")
+    more = {"sweep": ("q.csv", "-o", "r.jsonl"), "view": ("-o", "v.glb")}
+
+    for command in "collide", "first-contact", "distance", "sweep", "tradeoff", "stability", "view":
+        ended = obbtree(command, "mm.obbt", "m.glb", *more.get(command, ()))
+        assert ended.code == 3, command
+        assert "unit: A is in mm, B in m; bring both to one" in ended.err, command
+    assert obbtree("collide", "mm.obbt", "m.glb", "--all-pairs").code == 3
+    assert not (files / "r.jsonl").exists()
+
+
 def test_tree_of_a_scaled_mesh_says_so(files, obbtree):
     obbtree("build", "one.obj", "--scale", 1000, "--unit", "mm", "-o", "s.obbt")
 

@@ -39,6 +39,19 @@ def obj(corners: Sequence[Sequence[float]]) -> str:
     return "\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in CUBE_FACES]) + "\n"
 
 
+def objects(**shifts: float) -> str:
+    """Return an OBJ file of unit cubes by name, each shifted along x."""
+    lines = []
+    for count, (name, x) in enumerate(shifts.items()):
+        lines.append(f"o {name}")
+        for line in obj(cube((x, 0, 0))).splitlines():
+            letter, *numbers = line.split()
+            if letter == "f":
+                numbers = [str(int(number) + 8 * count) for number in numbers]
+            lines.append(" ".join([letter, *numbers]))
+    return "\n".join(lines) + "\n"
+
+
 def as_input(path: Path) -> dict[str, object]:
     """Return what documents say of a cube's file that was named from its folder."""
     digest = hashlib.sha256(path.read_bytes()).hexdigest()

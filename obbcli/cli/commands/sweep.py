@@ -220,8 +220,14 @@ def _setting(asked: TwoBodyOptions, *, solid: bool) -> SweepSetting:
 
 
 def _read(asked: TwoBodyOptions) -> tuple[Input, Input]:
-    """Return A and B, with what is needed to know them again."""
-    return read_pair(
+    """Return A and B, with what is needed to know them again.
+
+    Raises:
+        ObbError: one of them cannot be read, or they state different units.
+    """
+    from obbcli.questions.pair_question import check_pair_units
+
+    a, b = read_pair(
         asked.a,
         asked.b,
         (asked.units.of_a(), asked.units.of_b()),
@@ -229,6 +235,8 @@ def _read(asked: TwoBodyOptions) -> tuple[Input, Input]:
         hashed=True,
         progress=asked.common.shows_progress,
     )
+    check_pair_units((a.tree, b.tree))
+    return a, b
 
 
 def _header(

@@ -8,6 +8,7 @@ from obbcli.report.schema.shared import (
     BUILD_FIELDS,
     CONTACT_FIELDS,
     COUNTERS,
+    PART_NAMES,
     SECONDS,
     document,
 )
@@ -183,7 +184,8 @@ def sweep_row() -> Schema:
     }
     stats = {"stats": record(dict.fromkeys(COUNTERS, COUNT))}
     error = {"error": record({"where": _PLACE, "fault": _FAULT, "remedy": _REMEDY})}
-    return {"oneOf": [record(head | CONTACT_FIELDS | stats), record(head | error)]}
+    answered = record(head | CONTACT_FIELDS | PART_NAMES | stats, optional=PART_NAMES)
+    return {"oneOf": [answered, record(head | error)]}
 
 
 def error() -> Schema:

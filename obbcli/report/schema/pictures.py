@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from obbcli.report.schema.shared import CONTACT_FIELDS, SECONDS, document, pair_document
+from obbcli.report.schema.shared import (
+    CONTACT_FIELDS,
+    PART_NAMES,
+    SECONDS,
+    document,
+    pair_document,
+)
 from obbcli.report.schema.words import (
     AMOUNT,
     COUNT,
@@ -64,6 +70,6 @@ def _contact() -> Schema:
     }
     return pair_document(
         "view",
-        record(CONTACT_FIELDS | {"drawn": record(drawn)}),
+        record(CONTACT_FIELDS | PART_NAMES | {"drawn": record(drawn)}, optional=PART_NAMES),
         solid=told(FLAG, "whether a body inside the other counts as contact"),
     )

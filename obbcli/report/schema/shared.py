@@ -38,7 +38,10 @@ TIME_BOUNDS = tuple_of(AMOUNT, or_null(AMOUNT))
 SECONDS = table_of(AMOUNT, "s of wall time by stage")
 
 ACCURACY_FIELDS = schemas_of(Accuracy)
-CONTACT_FIELDS = schemas_of(Contact, status=STATUS)
+_CONTACT = schemas_of(Contact, status=STATUS)
+PART_NAMES = {name: _CONTACT.pop(name) for name in ("part_a", "part_b")}
+"""What an answer adds to its triangles where parts were selected: both keys or none."""
+CONTACT_FIELDS = _CONTACT
 
 # What every kind of search counts.
 COUNTERS = Counts._fields
@@ -73,15 +76,6 @@ PATH_FIELDS = {
 _PART_ROWS = record(
     documented(PartRows, {"path": TEXT, "first_triangle": COUNT, "triangle_count": COUNT})
 )
-PART_NAMES = {
-    f"part_{side}": told(
-        or_null(TEXT),
-        f"path of the selected part of {side.upper()} that its triangle is of; there where "
-        "FILE#PATTERN selected parts of A or B",
-    )
-    for side in "ab"
-}
-"""What an answer adds to its triangles; both keys or none."""
 
 BUILD_FIELDS = {
     "fit": told(TEXT, "how boxes are fitted"),

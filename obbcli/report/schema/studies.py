@@ -6,6 +6,7 @@ from typing import get_args
 
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
+    PART_NAMES,
     SECONDS,
     STATUS,
     TIME_BOUNDS,
@@ -39,10 +40,16 @@ def tradeoff() -> Schema:
     """Return the schema of `obbtree tradeoff`."""
     result = {
         "reference": told(
-            record(_answered("status", "time", "time_bounds", "evidence", "distance")),
+            record(
+                _answered("status", "time", "time_bounds", "evidence", "distance") | PART_NAMES,
+                optional=PART_NAMES,
+            ),
             "The certified answer that errors are measured against.",
         ),
-        "rows": told(list_of(record(_trial())), "the settings that were measured"),
+        "rows": told(
+            list_of(record(_trial() | PART_NAMES, optional=PART_NAMES)),
+            "the settings that were measured",
+        ),
         "unreached": told(
             list_of(record(_SETTING | {"why": TEXT})), "settings that the budget did not reach"
         ),
@@ -118,7 +125,9 @@ def _trial() -> dict[str, Schema]:
 def stability() -> Schema:
     """Return the schema of `obbtree stability`."""
     result = {
-        "answer": told(record(CONTACT_FIELDS), "To the question itself."),
+        "answer": told(
+            record(CONTACT_FIELDS | PART_NAMES, optional=PART_NAMES), "To the question itself."
+        ),
         "extreme_count": told(COUNT, "how many extremes there were to try"),
         "tried_count": told(COUNT, "how many were tried"),
         "broken_count": told(COUNT, "how many did not hold: should be 0"),

@@ -64,11 +64,12 @@ class Battery:
         duration: float | None = None,
         accuracy: Accuracy | None = None,
     ) -> None:
-        self._pair = pair_of(PairQuestion.of(a, b, duration, accuracy))
+        question = PairQuestion.of(a, b, duration, accuracy)
+        self._pair = pair_of(question)
         self._trees = Trees()
         asked = self._pair
         whole = first_contact(*self._trees.bodies(asked), asked.duration, asked.accuracy)
-        self.answer = whole
+        self.answer = question.with_parts(whole, (whole.triangle_a, whole.triangle_b))
         most = min(asked.accuracy.max_iterations, max(PATIENCE * whole.stats.pops, LEAST_POPS))
         self._pair = asked._replace(accuracy=replace(asked.accuracy, max_iterations=most))
         self._told = Proofs.of(self.answer, self._pair, Fraction(1))
