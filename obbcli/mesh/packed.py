@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import gzip
 import io
+import re
 import zlib
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -13,6 +13,8 @@ from obbcli.mesh.formats.sniff import HEAD_BYTES
 from obbcli.mesh.source import checked_source, most_bytes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from obbcli.mesh.source import Source
 
 #: Suffixes of the formats that are read packed.
@@ -23,10 +25,14 @@ _NAMES = "STL, OBJ and PLY"
 #: thousandth.
 _ALWAYS = 64 << 20
 _RATIO = 200
-_CHUNK = 1 << 20
+#: Bytes that are packed and unpacked at a time; a member begins with less, as many are small.
+_PIECE, _CHUNK = 1 << 16, 1 << 20
+_FIRST_PIECE = 1 << 9
 #: What tells zlib that its data stand in gzip's frame: 16 more than its largest window.
 _GZIP = 31
 _BLANK = b"\0 \t\r\n"
+#: Zeros fill a file up on media that hold whole blocks.
+_NO_FILLING = re.compile(rb"[^\0]")
 _AGAIN = "copy or download it again"
 
 
@@ -41,7 +47,7 @@ def unpacked(source: Source) -> Source:
         data = _unpacked(source)
     except EOFError as fault:
         raise source.error("is a gzip file that ends too soon", _AGAIN) from fault
-    except (OSError, zlib.error) as fault:
+    except zlib.error as fault:
         raise source.error("is a gzip file that is damaged", _AGAIN) from fault
     except MemoryError as fault:
         raise source.error("does not fit into memory when it is unpacked") from fault
@@ -62,15 +68,38 @@ def unpacked_head(head: Source) -> Source | None:
 def _unpacked(source: Source) -> bytes:
     """Return what a gzip file holds; memory for what lies beyond the bound is never taken."""
     most = min(most_bytes(), max(_ALWAYS, _RATIO * len(source.data)))
-    parts, size = [], 0
-    with gzip.GzipFile(fileobj=io.BytesIO(source.data)) as file:
-        while part := file.read(_CHUNK):
-            size += len(part)
-            if size > most:
-                fault = f"is a gzip file that unpacks to more than {most:,} bytes"
-                raise source.error(fault, "unpack it first where you trust it: gunzip")
-            parts.append(part)
-    return b"".join(parts)
+    whole = io.BytesIO()
+    for part in _members(source.data):
+        if whole.tell() + len(part) > most:
+            fault = f"is a gzip file that unpacks to more than {most:,} bytes"
+            raise source.error(fault, "unpack it first where you trust it: gunzip")
+        whole.write(part)
+    return whole.getvalue()
+
+
+def _members(data: bytes) -> Iterator[bytes]:
+    """Yield what the members of a gzip file hold, a little at a time.
+
+    Python's own module reads headers and fillings byte by byte, which files can make very long.
+
+    Raises:
+        EOFError: the last member is not whole.
+        zlib.error: one is damaged, or what follows is none.
+    """
+    place = 0
+    while found := _NO_FILLING.search(data, place):
+        place, step = found.start(), _FIRST_PIECE
+        member = zlib.decompressobj(_GZIP)
+        while not member.eof:
+            piece = data[place : place + step]
+            if not piece:
+                raise EOFError
+            part = member.decompress(piece, _CHUNK)
+            # At a member's end the tail may still be that of the call before.
+            rest = member.unused_data if member.eof else member.unconsumed_tail
+            place += len(piece) - len(rest)
+            step = min(2 * step, _PIECE)
+            yield part
 
 
 def refuse_other_formats(source: Source, suffix: str) -> None:

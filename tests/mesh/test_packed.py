@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import hashlib
 import io
+import itertools
 import os
 import tarfile
 import threading
@@ -93,6 +94,75 @@ def test_members_of_a_packed_file_are_one_content(tmp_path):
     data = gzip.compress(OBJ[:100], mtime=0) + gzip.compress(OBJ[100:], mtime=0)
 
     assert len(load_mesh(placed(tmp_path, "m.obj.gz", data)).triangles) == 12
+
+
+def flagged(flag, more):
+    """Return a packed mesh whose header has a flag, and what the flag announces."""
+    stored = bytearray(gzip.compress(OBJ, mtime=0))
+    stored[3] |= flag
+    return bytes(stored[:10]) + more + bytes(stored[10:])
+
+
+EXTRA, NAME, COMMENT, HEADER_CHECK, RESERVED = 4, 8, 16, 2, 0x20
+MEMBER, NOTHING = gzip.compress(OBJ, mtime=0), gzip.compress(b"", mtime=0)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        MEMBER + bytes(1000),
+        MEMBER + bytes(7) + NOTHING + bytes(5 << 20),
+        NOTHING * 5_000 + MEMBER + NOTHING,
+        flagged(NAME, b"n" * (1 << 20) + b"\0"),
+        flagged(COMMENT, b"a comment\0"),
+        flagged(EXTRA, (60_000).to_bytes(2, "little") + bytes(60_000)),
+        flagged(NAME | COMMENT, b"m.obj\0\xff\0"),
+        gzip.compress(OBJ, 0, mtime=0),
+    ],
+    ids=["filled", "fillings", "empty members", "long name", "comment", "extra", "two", "stored"],
+)
+def test_whatever_gzip_allows_is_unpacked_as_gzip_does(data):
+    assert same(load_mesh_bytes(data, ".obj"), load_mesh_bytes(OBJ, ".obj"))
+    assert gzip.decompress(data) == OBJ
+
+
+@pytest.mark.parametrize("size", [(1 << 20) - 1, 1 << 20, (1 << 20) + 1, 3 << 20])
+def test_member_may_follow_one_that_unpacks_to_far_more(size):
+    data = gzip.compress(b"#" * size + b"\n", mtime=0) + MEMBER
+
+    assert same(load_mesh_bytes(data, ".obj"), load_mesh_bytes(OBJ, ".obj"))
+
+
+@pytest.mark.parametrize(
+    ("data", "fault"),
+    [
+        (MEMBER + MEMBER[:-9], "ends too soon"),
+        (MEMBER + b"\x1f\x8b", "ends too soon"),
+        (flagged(NAME, b"")[:60], "ends too soon"),
+        (MEMBER + b"\0xyz", "is damaged"),
+        (flagged(HEADER_CHECK, b"zz"), "is damaged"),
+        (flagged(RESERVED, b""), "is damaged"),
+        (MEMBER[:2] + b"\x07" + MEMBER[3:], "is damaged"),
+        (MEMBER[:-4] + b"\0\0\0\0", "is damaged"),
+    ],
+)
+def test_members_that_are_not_whole_and_what_is_no_member_are_refused(data, fault):
+    with pytest.raises(MeshError, match=f"is a gzip file that {fault}"):
+        load_mesh_bytes(data, ".obj")
+
+
+def test_members_of_any_size_are_put_together():
+    """The bounds of pieces lie anywhere in the packed and in the unpacked text."""
+    numbers = "".join(f"v {k} {k * k % 97} {k % 89}\n" for k in range(150_000)).encode()
+    text = numbers + b"f 1 2 3\n"
+    assert len(text) > 1 << 21
+    cuts = [0, 1, 700, 1 << 16, 1 << 20, (1 << 20) + 1, len(text)]
+    members = [gzip.compress(text[a:b], mtime=0) for a, b in itertools.pairwise(cuts)]
+
+    mesh = load_mesh_bytes(b"".join(members), ".obj")
+
+    assert len(mesh.vertices) == 150_000
+    assert mesh.vertices[-1].tolist() == [149_999, 149_999**2 % 97, 149_999 % 89]
 
 
 def test_packed_bytes_of_a_stream_are_read():
