@@ -117,6 +117,7 @@ def _mesh_rows(file: Record, result: Record) -> list[tuple[str, str]]:
         ("vertices", count(result["vertex_count"])),
         ("bounds", f"{point(low)}  to  {point(high)}"),
         ("size", f"{length(result['size'])} (diagonal, mesh units)"),
+        ("unit", file.get("unit", "not stated")),
         ("centroid", point(result["surface_centroid"])),
         ("watertight", "yes" if result["is_watertight"] else "no"),
         ("degenerate", f"{count(result['degenerate_count'])} triangles"),

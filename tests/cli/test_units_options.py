@@ -157,3 +157,36 @@ def test_scene_tells_every_scale_of_a_file(files, obbtree):
     (mesh,) = obbtree("scene", "s.toml", "--json").json["inputs"]["meshes"]
 
     assert mesh["notes"] == ["coordinates times 2.0", "coordinates times 3.0"]
+
+
+def test_info_shows_the_unit_and_takes_another(files, obbtree):
+    built = obbtree("build", "m.glb", "--unit", "mm", "--scale", 3, "-o", "t.obbt", "--json")
+    of_tree = obbtree("info", "t.obbt", "--unit", "mm", "--json").json["result"]
+    of_mesh = obbtree("info", "m.glb", "--unit", "mm", "--scale", 3, "--json").json
+    table = obbtree("info", "m.glb", "--unit", "cm").out
+
+    assert built.code == 0
+    assert of_mesh["result"]["bounds"] == of_tree["bounds"] == [[0, 0, 0], [3, 3, 0]]
+    assert of_mesh["inputs"]["file"]["unit"] == "mm"
+    assert "\nunit        cm\nc" in table
+    assert "bounds      0 0 0  to  100 100 0\n" in table
+    assert "note        from m to cm: coordinates times 100\n" in table
+    assert "\nunit        m\n" in obbtree("info", "m.glb").out
+    assert "\nunit        not stated\n" in obbtree("info", "one.obj").out
+
+
+def test_info_refuses_to_scale_trees_and_lists_of_parts(files, obbtree):
+    obbtree("build", "one.obj", "--unit", "mm", "-o", "t.obbt")
+
+    scaled = obbtree("info", "t.obbt", "--scale", 2)
+    other = obbtree("info", "t.obbt", "--unit", "m")
+
+    assert (scaled.code, other.code) == (3, 3)
+    assert "t.obbt: is a tree in mm, not m; build one: obbtree build one.obj" in other.err
+    for words in ("--unit", "mm"), ("--scale", 2), ("--weld", 1e-9):
+        listed = obbtree("info", "m.glb", "--parts", *words)
+        assert (listed.code, listed.out) == (2, "")
+        assert (
+            f"{words[0]}: changes one mesh, and --parts lists the parts as they are" in listed.err
+        )
+    assert obbtree("info", "one.obj", "--scale", 0).code == 2

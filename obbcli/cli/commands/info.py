@@ -11,7 +11,7 @@ import click
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
 from obbcli.cli.options.option import Command, common_options, option, verify_option
-from obbcli.cli.options.placement import UnitOptions, weld_option
+from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option, weld_option
 from obbcli.cli.options.words import PathName
 from obbcli.cli.output import emit
 from obbcli.errors import MeshError
@@ -30,15 +30,18 @@ Examples:
   obbtree info gear.obbt --check
   obbtree info gear.obbt --json
   obbtree info robot.glb --parts
+  obbtree info gear.stl --unit mm --scale 25.4
 """,
 )
 @click.argument("file", metavar="FILE", type=PathName())
 @option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
 @option("Question", "--parts", is_flag=True, help="List the parts of a mesh file, placed.")
+@unit_option
+@scale_option("--scale", "the mesh's")
 @weld_option
 @verify_option
 @common_options()
-def command(file: str, weld: float | None, common: CommonOptions, **flags: Any) -> int:
+def command(file: str, common: CommonOptions, **flags: Any) -> int:
     """Show what FILE holds: a mesh, or a tree with the mesh inside it.
 
     Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
@@ -52,12 +55,13 @@ def command(file: str, weld: float | None, common: CommonOptions, **flags: Any) 
     from obbcli.tree.tree import ObbTree
 
     keep_inputs(common.output, (file,))
-    lengths = UnitOptions(None, None, None, weld).of_a()
+    lengths = UnitOptions(flags["unit"], flags["scale"], None, flags["weld"]).of_a()
     check = flags["check"]
     if flags["parts"]:
-        if lengths is not None:
-            fault = "welds one mesh, and --parts lists the parts as they are"
-            raise UsageError("--weld", fault, "leave out one of the two")
+        for name in ("unit", "scale", "weld"):
+            if flags[name] is not None:
+                fault = "changes one mesh, and --parts lists the parts as they are"
+                raise UsageError(f"--{name}", fault, "leave out one of the two")
         return _parts(file, common, check=check)
     start = time.perf_counter()
     stamp = stamp_of(file_of(file))
