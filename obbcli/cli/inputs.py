@@ -67,6 +67,20 @@ class Lengths(NamedTuple):
     weld: float | None = None
 
 
+class Piped(NamedTuple):
+    """What standard input or a pipe brought.
+
+    Attributes:
+        data: all of it.
+        suffix: of the pipe's name, where it is a format's; else the bytes must tell.
+        place: what errors call it.
+    """
+
+    data: bytes
+    suffix: str | None
+    place: str
+
+
 def keep_inputs(output: Path | None, names: Iterable[str]) -> None:
     """Refuse to write an output over an input.
 
@@ -149,21 +163,18 @@ def read_shape(
         TreeFileError: the tree file is damaged.
         OSError: the file cannot be read.
     """
-    from obbcli.mesh import check_file, load_mesh, read_stream
+    from obbcli.mesh import check_file, load_mesh
     from obbcli.tree.tree import ObbTree
 
-    if name == STDIN:
-        return _from_bytes(read_stdin(), None, _STDIN_NAME, verify=verify, hashed=hashed)
+    piped = read_piped(name)
+    if piped is not None:
+        return _from_bytes(piped, verify=verify, hashed=hashed)
     file, pattern = file_and_pattern(name)
     path = Path(file)
     check_file(path)
     if pattern is not None:
         mesh = _selected(path, pattern, hashed=hashed)
         return mesh, mesh.sha256
-    if path.is_fifo():
-        with path.open("rb") as pipe:
-            data = read_stream(pipe, name)
-        return _from_bytes(data, path.suffix, name, verify=verify, hashed=hashed)
     if _is_tree(path):
         return ObbTree.open(name, verify=verify), None
     mesh = load_mesh(name, hashed=hashed)
@@ -215,19 +226,36 @@ def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:
     return load_selection(path, pattern, hashed=hashed)
 
 
-def _from_bytes(
-    data: bytes, suffix: str | None, name: str, *, verify: bool, hashed: bool
-) -> tuple[Mesh | ObbTree, str | None]:
-    """Return what a stream held: the suffix of its name tells where it is known, else its bytes."""
-    from obbcli.mesh import digest_of, known_suffixes, load_mesh_bytes
+def read_piped(name: str) -> Piped | None:
+    """Return what standard input or a pipe brings; None where `name` is a file's.
+
+    Raises:
+        MeshError: nothing can be read from there, or it brings too much.
+        OSError: it cannot be read.
+    """
+    from obbcli.mesh import known_suffixes, read_stream, suffix_of
+
+    if name == STDIN:
+        return Piped(read_stdin(), None, _STDIN_NAME)
+    path = Path(name)
+    if not path.is_fifo():
+        return None
+    with path.open("rb") as pipe:
+        data = read_stream(pipe, name)
+    suffix = suffix_of(path.name)
+    return Piped(data, suffix if suffix in known_suffixes() else None, name)
+
+
+def _from_bytes(piped: Piped, *, verify: bool, hashed: bool) -> tuple[Mesh | ObbTree, str | None]:
+    """Return what a stream held."""
+    from obbcli.mesh import digest_of, load_mesh_bytes
     from obbcli.tree.header import is_tree_file
     from obbcli.tree.tree import ObbTree
 
-    if is_tree_file(data):
-        tree = ObbTree.from_bytes(data, name, verify=verify)
-        return tree, digest_of(data)() if hashed else None
-    is_known = suffix is not None and suffix.lower() in known_suffixes()
-    mesh = load_mesh_bytes(data, suffix if is_known else None, name=name, hashed=hashed)
+    if is_tree_file(piped.data):
+        tree = ObbTree.from_bytes(piped.data, piped.place, verify=verify)
+        return tree, digest_of(piped.data)() if hashed else None
+    mesh = load_mesh_bytes(piped.data, piped.suffix, name=piped.place, hashed=hashed)
     return mesh, mesh.sha256
 
 

@@ -5,7 +5,7 @@ First room of the flow: mesh -> tree -> query -> report.
 
 from __future__ import annotations
 
-from obbcli.mesh.formats import known_suffixes
+from obbcli.mesh.formats import known_suffixes, suffix_of
 from obbcli.mesh.load import load_mesh, load_mesh_bytes
 from obbcli.mesh.mesh import Mesh, PartRows
 from obbcli.mesh.source import check_file, digest_of, read_stream
@@ -19,4 +19,5 @@ __all__ = [
     "load_mesh",
     "load_mesh_bytes",
     "read_stream",
+    "suffix_of",
 ]

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from obbcli.files import file_and_pattern
 from obbcli.mesh.formats import suffix_of
-from obbcli.mesh.formats.sniff import beginning
-from obbcli.mesh.reading import content_of, mesh_of, plain, reader_of, reading, refuse_other
-from obbcli.mesh.source import Source, check_file, checked_source
+from obbcli.mesh.reading import content_of, mesh_of, reader_of, reading, source_of_bytes
+from obbcli.mesh.source import Source, check_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,15 +68,8 @@ def load_mesh_bytes(
     Raises:
         MeshError: as in `load_mesh`; `name` is the place named.
     """
-    source = plain(checked_source(Source(name, name, bytes(data))))
-    if suffix is None:
-        found = beginning(source.data)
-        suffix = found.suffix if found else None
-        if suffix is None:
-            refuse_other(source, "")
-            fault = "does not begin as any known format does"
-            raise source.error(fault, "put it into a file whose suffix tells its format")
-    return _load(source, suffix.lower(), hashed=hashed)
+    source, known = source_of_bytes(data, suffix, name)
+    return _load(source, known, hashed=hashed)
 
 
 def _load(source: Source, suffix: str, *, hashed: bool) -> Mesh:

@@ -10,7 +10,7 @@ from obbcli.errors import MeshError
 from obbcli.mesh.formats import FORMATS, known_suffixes
 from obbcli.mesh.formats.sniff import HEAD_BYTES, beginning, is_packed
 from obbcli.mesh.mesh import Mesh
-from obbcli.mesh.source import digest_of, read_head, read_source
+from obbcli.mesh.source import Source, checked_source, digest_of, read_head, read_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from obbcli.mesh.mesh import PartRows
     from obbcli.mesh.parts.placed import PlacedPart
-    from obbcli.mesh.source import MeshArrays, Source
+    from obbcli.mesh.source import MeshArrays
 
 
 def content_of(path: Path, suffix: str) -> Source:
@@ -39,6 +39,23 @@ def content_of(path: Path, suffix: str) -> Source:
         else:
             _suffix_told(head, suffix)
     return plain(read_source(path))
+
+
+def source_of_bytes(data: bytes, suffix: str | None, name: str) -> tuple[Source, str]:
+    """Return what a stream brought, unpacked, and the suffix of its format, in lower case.
+
+    Raises:
+        MeshError: it is empty, or there is no suffix and its beginning says not what it is.
+    """
+    source = plain(checked_source(Source(name, name, bytes(data))))
+    if suffix is not None:
+        return source, suffix.lower()
+    found = beginning(source.data)
+    if found is None:
+        refuse_other(source, "")
+        fault = "does not begin as any known format does"
+        raise source.error(fault, "put it into a file whose suffix tells its format")
+    return source, found.suffix
 
 
 def plain(source: Source) -> Source:

@@ -215,7 +215,11 @@ def load_parts(path: str | os.PathLike[str]) -> Assembly:
         (['nut'], 3896)
     """
     name, pattern = file_and_pattern(os.fspath(path))
-    contents = read_parts(name, pattern)
+    return assembly_of(read_parts(name, pattern))
+
+
+def assembly_of(contents: FileParts) -> Assembly:
+    """Return what a reader told of a file's parts as parts; none is decoded."""
     maker = _Maker(contents)
     made = [maker.part(part) for part in contents.parts]
     return Assembly(made, contents.source.name, contents.sha256)

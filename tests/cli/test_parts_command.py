@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import gzip
+import io
+import os
 import struct
+import sys
+import threading
 
 import numpy as np
 import pytest
@@ -86,13 +91,57 @@ def test_info_of_parts_is_refused_where_it_has_no_meaning(files, obbtree):
 
     for words, code, told in (
         (("a.glb", "--check"), 2, "--check proves a tree"),
-        (("-",), 2, "name a file"),
         (("cube.obbt",), 3, "is a tree file, which has no parts"),
         (("bad.glb",), 3, "has no POSITION"),
         (("a.glb#gone",), 3, "matches none of 3 parts"),
     ):
         ended = obbtree("info", *words, "--parts")
         assert (ended.code, told in ended.err) == (code, True), ended.err
+
+
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_parts_of_standard_input_and_of_pipes_are_listed(files, obbtree, monkeypatch, is_packed):
+    data = (files / "a.glb").read_bytes()
+    if is_packed:
+        data = gzip.compress(b"o first\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", mtime=0)
+    (files / "b.obj.gz").write_bytes(data)
+    os.mkfifo(files / "p.obj.gz")
+    writer = threading.Thread(target=(files / "p.obj.gz").write_bytes, args=(data,))
+    writer.start()
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+
+    of_file = obbtree("info", "b.obj.gz", "--parts", "--json").json
+    of_stream = obbtree("info", "-", "--parts", "--json").json
+    of_pipe = obbtree("info", "p.obj.gz", "--parts", "--json").json
+    writer.join()
+
+    assert of_stream["result"] == of_pipe["result"] == of_file["result"]
+    assert of_stream["inputs"]["file"]["sha256"] == of_file["inputs"]["file"]["sha256"]
+    assert of_stream["inputs"]["file"]["path"] == "-"
+
+
+def test_pipe_that_is_packed_is_read_as_its_name_says(files, obbtree):
+    os.mkfifo(files / "p.obj.gz")
+    # Nothing at its beginning tells an OBJ file.
+    data = gzip.compress(b"mtllib\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", mtime=0)
+    writer = threading.Thread(target=(files / "p.obj.gz").write_bytes, args=(data,))
+    writer.start()
+
+    ended = obbtree("info", "p.obj.gz", "--json")
+    writer.join()
+
+    assert ended.json["result"]["triangle_count"] == 1
+
+
+def test_tree_on_standard_input_has_no_parts(files, obbtree, monkeypatch):
+    obbtree("build", "cube.stl")
+    data = (files / "cube.obbt").read_bytes()
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+
+    ended = obbtree("info", "-", "--parts")
+
+    assert (ended.code, ended.out) == (3, "")
+    assert ended.err.startswith("error: -: is a tree file, which has no parts; ask about the mesh")
 
 
 def test_turned_part_has_the_bounds_of_what_stands_there(files):

@@ -95,6 +95,27 @@ def test_blocks_of_an_index_are_parts_by_the_names_above_them(index):
     assert len(load_mesh(f"{index}#all").triangles) == 15
 
 
+def test_selected_blocks_are_told_as_those_of_the_whole_file_are(index):
+    cells = "a.vtu: 1 volume cell taken as its boundary"
+
+    assert load_mesh(f"{index}#**").notes == load_mesh(index).notes
+    assert load_mesh(f"{index}#all").notes == (cells, "2 blocks taken as one surface")
+    assert load_mesh(f"{index}#again").notes == (cells,)
+    assert load_mesh(f"{index}#all/2").notes == ()
+
+
+def test_blocks_without_triangles_are_not_counted(index):
+    (index.parent / "parts" / "a.vtp").write_text(
+        '<VTKFile type="PolyData" version="1.0"><PolyData><Piece NumberOfPoints="0" '
+        'NumberOfPolys="0"><Points><DataArray type="Float64" NumberOfComponents="3" '
+        'format="ascii"/></Points></Piece></PolyData></VTKFile>'
+    )
+
+    assert load_mesh(index).notes[-1] == "2 blocks taken as one surface"
+    assert load_mesh(f"{index}#**").notes == load_mesh(index).notes
+    assert load_mesh(f"{index}#all").notes == load_mesh(f"{index}#again").notes
+
+
 def test_other_files_are_one_part(index):
     assembly = load_parts(index.parent / "parts" / "a.vtu")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from obbcli.cli.boundary import UsageError
-from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
+from obbcli.cli.inputs import keep_inputs, measured, read_piped, read_shape
 from obbcli.cli.options.option import Command, common_options, option, verify_option
 from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option, weld_option
 from obbcli.cli.options.words import PathName
@@ -18,6 +18,7 @@ from obbcli.errors import MeshError
 
 if TYPE_CHECKING:
     from obbcli.cli.options.option import CommonOptions
+    from obbcli.motion.assembly import Assembly
 
 
 @click.command(
@@ -78,20 +79,33 @@ def command(file: str, common: CommonOptions, **flags: Any) -> int:
 
 def _parts(file: str, common: CommonOptions, *, check: bool) -> int:
     """List the parts of a mesh file."""
-    from obbcli.files import file_of
-    from obbcli.motion.assembly import load_parts
     from obbcli.report.parts import parts_bare, parts_record, parts_tables
-    from obbcli.tree.tree import begins_as_tree
 
     if check:
         raise UsageError("--parts", "lists parts, and --check proves a tree", "leave out one")
-    if file == STDIN:
-        raise UsageError("--parts", "reads a file, not standard input", "name a file")
     start = time.perf_counter()
-    if begins_as_tree(Path(file_of(file))):
-        remedy = "ask about the mesh that it was built of"
-        raise MeshError(file, "is a tree file, which has no parts", remedy)
-    record = parts_record(file, load_parts(file))
+    record = parts_record(file, _assembly(file))
     record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
     emit(record, parts_tables, common, bare=parts_bare)
     return 0
+
+
+def _assembly(file: str) -> Assembly:
+    """Return the parts of a mesh file, of what a pipe brings, or of standard input.
+
+    Raises:
+        MeshError: it cannot be read or is refused, or is a tree.
+    """
+    from obbcli.files import file_of
+    from obbcli.mesh.parts.load import read_parts_bytes
+    from obbcli.motion.assembly import assembly_of, load_parts
+    from obbcli.tree.header import is_tree_file
+    from obbcli.tree.tree import begins_as_tree
+
+    piped = read_piped(file)
+    if begins_as_tree(Path(file_of(file))) if piped is None else is_tree_file(piped.data):
+        remedy = "ask about the mesh that it was built of"
+        raise MeshError(file, "is a tree file, which has no parts", remedy)
+    if piped is None:
+        return load_parts(file)
+    return assembly_of(read_parts_bytes(piped.data, piped.suffix, name=piped.place))

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.mesh.formats import suffix_of
+from obbcli.mesh.formats.text import counted
 from obbcli.mesh.mesh import PartRows
 from obbcli.mesh.parts.placed import joined
 from obbcli.mesh.parts.selection import listed_parts, selected
-from obbcli.mesh.reading import content_of, mesh_of, parts_reader_of, reading
+from obbcli.mesh.reading import content_of, mesh_of, parts_reader_of, reading, source_of_bytes
 from obbcli.mesh.source import check_file
 
 if TYPE_CHECKING:
@@ -48,6 +49,9 @@ def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool =
         rows.append(PartRows(part.path, first, count))
         first += count
     source = contents.source
+    kind = contents.parts[0].kind
+    if kind and len(rows) > 1:
+        source.note(f"{counted(len(rows), kind)} taken as one surface")
     return mesh_of(joined(arrays, source), source, contents.sha256, rows)
 
 
@@ -69,7 +73,20 @@ def read_parts(
     path = Path(path)
     check_file(path)
     suffix = suffix_of(path.name)
-    source = content_of(path, suffix)
+    return _parts_of(content_of(path, suffix), suffix, pattern, hashed=hashed)
+
+
+def read_parts_bytes(data: bytes, suffix: str | None = None, *, name: str) -> FileParts:
+    """Return the parts in `data`, as `read_parts` does of a file; `name` is the place named.
+
+    Raises:
+        MeshError: as `load_mesh_bytes`.
+    """
+    source, known = source_of_bytes(data, suffix, name)
+    return _parts_of(source, known, None, hashed=True)
+
+
+def _parts_of(source: Source, suffix: str, pattern: str | None, *, hashed: bool) -> FileParts:
     with reading(source, suffix, hashed=hashed) as (told, digest):
         parts = listed_parts(parts_reader_of(told)(source), source.place)
         if pattern is not None:

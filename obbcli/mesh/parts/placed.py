@@ -31,6 +31,7 @@ class PlacedPart(NamedTuple):
         decode: returns vertices and triangles in the part's own coordinates.
         matrix: (4, 4), applied to columns, from there to the file's world; None: the identity.
         may_be_bare: whether it may turn out to have no triangles; it is no part of the file then.
+        kind: what it is called where a note tells that several were joined; else empty.
     """
 
     path: str
@@ -38,6 +39,7 @@ class PlacedPart(NamedTuple):
     decode: Callable[[], MeshArrays]
     matrix: NDArray[np.float64] | None = None
     may_be_bare: bool = False
+    kind: str = ""
 
     def placed(self) -> MeshArrays:
         """Return vertices and triangles in the file's world.

@@ -96,9 +96,12 @@ def read_blocks(source: Source, read: Callable[[Source], MeshArrays]) -> MeshArr
         MeshError: a file lies elsewhere, cannot be read or is refused; or no file is named.
     """
     blocks = Blocks(source, read)
-    found = joined((blocks.of(block) for block in blocks.files), source)
-    source.note(f"{counted(len(blocks.files), 'block')} taken as one surface")
-    return found
+    found = [blocks.of(block) for block in blocks.files]
+    # Those without triangles are no parts of the file.
+    count = sum(len(triangles) > 0 for _, triangles in found)
+    if count > 1:
+        source.note(f"{counted(count, 'block')} taken as one surface")
+    return joined(found, source)
 
 
 class Blocks:

@@ -29,4 +29,4 @@ def parts_vtk(source: Source) -> Iterator[PlacedPart]:
     for block in blocks.files:
         path = paths.take("/".join(block.path))
         # Only the file itself says whether it has a surface.
-        yield PlacedPart(path, block.file, partial(blocks.of, block), may_be_bare=True)
+        yield PlacedPart(path, block.file, partial(blocks.of, block), None, True, "block")
