@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from obbcli.questions.contacts import contacts
     from obbcli.questions.distance import distance
     from obbcli.questions.first_contact import Query, first_contact
+    from obbcli.questions.notes import notes
     from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
     from obbcli.scene import Scene, SceneBody, SceneContact
     from obbcli.study.stability.battery import stability
@@ -78,6 +79,7 @@ _HOMES = {
     "first_contact": "questions.first_contact",
     "load_mesh": "mesh",
     "load_parts": "motion.assembly",
+    "notes": "questions.notes",
     "stability": "study.stability.battery",
     "sweep": "sweeps.sweep",
     "tradeoff": "study.tradeoff.tradeoff",
@@ -119,6 +121,7 @@ __all__ = [
     "first_contact",
     "load_mesh",
     "load_parts",
+    "notes",
     "primitives",
     "stability",
     "sweep",

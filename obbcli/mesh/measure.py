@@ -23,6 +23,8 @@ _CROSS_ERROR = 8 * 2.0**-53
 _UNDERFLOW = 2.0**-900
 #: Triangles at a time: what fits the cache. A power of two, so that blocks do not change sums.
 _BLOCK = 1 << 14
+#: Of so many triangles a surface's size is told from below.
+_SAMPLE = 512
 #: 2^27 + 1 splits a double into two halves whose products are exact (Dekker 1971).
 _SPLITTER = 2.0**27 + 1
 
@@ -38,10 +40,19 @@ def used_vertices(
 
 def bounds(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     """Return the lower and upper corner of the used vertices' box, read-only (2, 3)."""
-    used = used_vertices(vertices, triangles)
-    corners = np.array([used.min(axis=0), used.max(axis=0)])
+    # An axis at a time, which takes a fifth of the time. Of two zeros either may be the least: the
+    # sum makes both 0.0.
+    columns = used_vertices(vertices, triangles).T
+    corners = np.array([[axis.min() for axis in columns], [axis.max() for axis in columns]]) + 0.0
     corners.setflags(write=False)
     return corners
+
+
+def least_size(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> float:
+    """Return a lower bound of the surface's size: that of some of its triangles, in no time."""
+    step = 1 + len(triangles) // _SAMPLE
+    some = vertices[triangles[::step].reshape(-1)]
+    return diagonal(np.array([some.min(axis=0), some.max(axis=0)]))
 
 
 def diagonal(corners: NDArray[np.float64]) -> float:

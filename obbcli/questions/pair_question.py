@@ -178,15 +178,26 @@ def trees_of(bodies: tuple[Body, Body]) -> Trees:
 
 
 def _tree(shape: Shape) -> ObbTree:
-    if isinstance(shape, ObbTree):
+    found = surface_of(shape)
+    return ObbTree.build(found) if isinstance(found, Mesh) else found
+
+
+def surface_of(shape: Shape) -> Mesh | ObbTree:
+    """Return the mesh or the tree that a shape is; a path's file is read.
+
+    Raises:
+        MeshError: a mesh cannot be read or is refused.
+        TreeFileError: a tree file is damaged.
+        OSError: a file cannot be read.
+        MotionError: it is of another kind.
+    """
+    if isinstance(shape, (Mesh, ObbTree)):
         return shape
-    if isinstance(shape, Mesh):
-        return ObbTree.build(shape)
     if isinstance(shape, (str, os.PathLike)):
         return load_tree(shape)
     decoded = getattr(shape, "mesh", None)  # that of a part, which is decoded by this look
     if isinstance(decoded, Mesh):
-        return ObbTree.build(decoded)
+        return decoded
     raise MotionError(
         "shape", f"is of type {type(shape).__name__}", "pass a tree, a mesh or a path"
     )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.mesh.measure import diagonal
 from obbcli.report.record import note_rows
 from obbcli.report.table import count, length, point, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from obbcli.mesh import Mesh
     from obbcli.report.record import Record, Source
     from obbcli.tree.tree import ObbTree
 
@@ -44,28 +44,17 @@ def part_rows(result: Record) -> list[tuple[str, str]]:
     return [("parts", " and ".join(words))] if words else []
 
 
-#: Sizes that are further apart are more often a mistake of units than meant.
-_ODD_SIZES = 500.0
-
-
-def about_units(sources: Sequence[Source], trees: Sequence[ObbTree]) -> list[Source]:
+def about_units(
+    sources: tuple[Source, Source], trees: tuple[Mesh | ObbTree, Mesh | ObbTree]
+) -> tuple[Source, Source]:
     """Return what is said of A and B, with notes on units that may be mistaken."""
-    a, b = trees
-    notes: tuple[list[str], list[str]] = ([], [])
-    if (a.unit is None) != (b.unit is None):
-        unit, place = a.unit or b.unit, 0 if a.unit is None else 1
-        other = "BA"[place]
-        notes[place].append(f"states no unit of length, {other} is in {unit}: see --unit, --scale")
-    sizes = [diagonal(tree.bounds) for tree in trees]
-    small, large = min(sizes), max(sizes)
-    if small > 0 and large / small > _ODD_SIZES:
-        place = sizes.index(large)
-        told = f"{large / small:,.0f} times the size of {'BA'[place]}"
-        notes[place].append(f"is {told}: is one of them in another unit? See --unit, --scale")
-    return [
+    from obbcli.questions.notes import unit_notes
+
+    a, b = (
         source._replace(notes=(*source.notes, *more))
-        for source, more in zip(sources, notes, strict=True)
-    ]
+        for source, more in zip(sources, unit_notes(trees, "--unit, --scale"), strict=True)
+    )
+    return a, b
 
 
 def told_units(meshes: Sequence[Source]) -> list[Source]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli import kernels
 from obbcli.errors import TreeFileError
+from obbcli.mesh import measure
 from obbcli.mesh.measure import diagonal
 from obbcli.motion.pose import Pose
 
@@ -114,6 +115,19 @@ class TreeFacts:
     def size(self) -> float:
         """Diagonal of `bounds`, mesh units; as `mesh`."""
         return diagonal(self.bounds)
+
+    def size_bounds(self) -> tuple[float, float]:
+        """Return two numbers that `size` lies between, which takes no pass over the surface.
+
+        Rounding may put it outside by some units in the last place.
+        """
+        mesh = None if self._surface is not None else self.mesh
+        if mesh is None or "bounds" in vars(mesh):
+            return self.size, self.size
+        # No coordinate is larger than the power of two that the boxes are scaled by.
+        corner = _ldexp_or_none(1.0, self._made.scale_exponent)
+        most = math.inf if corner is None else 2.0 * math.sqrt(3.0) * corner
+        return measure.least_size(mesh.vertices, mesh.triangles), most
 
     @property
     def surface_centroid(self) -> NDArray[np.float64]:

@@ -111,6 +111,11 @@ class Growth(TreeInMemory):
             return self._arrays
 
     @property
+    def scale_exponent(self) -> int:
+        """Boxes are in mesh units times 2 to the minus this, which no coordinate exceeds."""
+        return self._builder.scale_exponent
+
+    @property
     def mesh(self) -> Mesh:
         """The mesh that the tree is over."""
         return self._mesh

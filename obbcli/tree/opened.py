@@ -49,7 +49,7 @@ class OpenedTree:
             self.triangle_count = header.triangle_count
             self.vertex_count = header.vertex_count
             self.nbytes = sum(header.section_bytes)
-            self._scale_exponent = header.scale_exponent
+            self.scale_exponent = header.scale_exponent
             with self._named_faults():
                 self._file = kernels.FileTree(
                     os.dup(file.fileno()),
@@ -75,7 +75,7 @@ class OpenedTree:
             corners=corners,
             triangle_ids=triangle_ids,
             vertices=vertices,
-            scale_exponent=self._scale_exponent,
+            scale_exponent=self.scale_exponent,
             description=self.description,
             surface=self.surface,
         )

@@ -88,6 +88,10 @@ class AnyTree(Protocol):
         """Area-weighted centroid of the surface, (3,); the header of a file says it."""
 
     @property
+    def scale_exponent(self) -> int:
+        """Boxes are in mesh units times 2 to the minus this, which no coordinate exceeds."""
+
+    @property
     def triangle_count(self) -> int:
         """How many triangles the mesh has."""
 
@@ -174,6 +178,11 @@ class WholeTree(TreeInMemory):
     def surface(self) -> Surface | None:
         """What the tree's file says of the mesh as a whole; None where the mesh came first."""
         return self._arrays.surface
+
+    @property
+    def scale_exponent(self) -> int:
+        """Boxes are in mesh units times 2 to the minus this, which no coordinate exceeds."""
+        return self._arrays.scale_exponent
 
     @cached_property
     def mesh(self) -> Mesh:

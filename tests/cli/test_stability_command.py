@@ -160,7 +160,7 @@ def test_plot_that_cannot_be_is_refused_first(here, obbtree, words, code, fault)
 
 
 def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
-    monkeypatch.setattr("obbcli.cli.commands.stability.find_spec", lambda _: None)
+    monkeypatch.setattr("obbcli.cli.plot.find_spec", lambda _: None)
 
     ended = obbtree("stability", *APART, "--plot", "held.svg")
 

@@ -39,7 +39,7 @@ def test_plot_is_a_whole_picture(here, obbtree, words):
 def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch):
     whole = importlib.util.find_spec
     monkeypatch.setattr(
-        "obbcli.cli.commands.tradeoff.find_spec",
+        "obbcli.cli.plot.find_spec",
         lambda name: None if name == "matplotlib" else whole(name),
     )
 

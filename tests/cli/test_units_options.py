@@ -6,6 +6,8 @@ import pytest
 from mesh_files.cube_files import cube, obj
 from mesh_files.gltf_files import DOCUMENT, glb
 
+from obbcli import notes as notes_of
+
 MOTION = "--vel", 0, 0, 0
 
 
@@ -83,6 +85,21 @@ def test_trees_keep_the_unit_and_refuse_another(files, obbtree):
     assert "mm.obbt: is a tree in mm, not m; build one: obbtree build m.glb --unit m" in other.err
     assert "is not scaled; build one: obbtree build m.glb --scale 2.0 -o FILE" in scaled.err
     assert "A is in mm, B in m; bring both to one: --unit U" in mixed.err
+
+
+def test_every_command_tells_of_units_and_sizes(files, obbtree):
+    (files / "q.csv").write_text("vel\n0 0 0\n")
+    more = {"sweep": ("q.csv", "-o", "r.jsonl", "--force"), "view": ("-o", "v.glb", "--force")}
+    more["tradeoff"] = ("--budget", "0.1")
+    commands = "collide", "first-contact", "distance", "sweep", "tradeoff", "stability", "view"
+
+    for pair in ("one.obj", "mm.obj"), ("one.obj", "m.glb"):
+        wanted = [text.split(" ", 1)[1].split("ee ")[0] for text in notes_of(*pair)]
+        assert len(wanted) == 1
+        for command in commands:
+            ended = obbtree(command, *pair, *more.get(command, ()), "--json")
+            told = [note for side in "ab" for note in notes(ended.json, side)]
+            assert [text.split("ee ")[0] for text in told] == wanted, command
 
 
 def test_every_command_refuses_two_units(files, obbtree):

@@ -118,6 +118,7 @@ NEEDED = {
     "obbcli.motion.rotation",
     "obbcli.questions",
     "obbcli.questions.border",
+    "obbcli.questions.notes",
     "obbcli.questions.pair_question",
     "obbcli.questions.collide",
     "obbcli.report",

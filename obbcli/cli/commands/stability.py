@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import time
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from obbcli.cli.boundary import ExitCode, OutputError, UsageError, writing
-from obbcli.cli.inputs import keep_inputs
+from obbcli.cli.boundary import ExitCode, UsageError, writing
 from obbcli.cli.options.option import Command, option
 from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options
 from obbcli.cli.options.words import PathName
 from obbcli.cli.output import emit, tell_interrupted
+from obbcli.cli.plot import check_plot
 from obbcli.cli.progress import trying
 from obbcli.files import write_whole
 
@@ -23,9 +22,6 @@ if TYPE_CHECKING:
     from obbcli.report.record import Record
     from obbcli.report.stability import Studied
     from obbcli.study.stability.battery import Battery
-
-
-_PLOTS = (".svg", ".png")
 
 
 @click.command(
@@ -61,7 +57,7 @@ def command(asked: TwoBodyOptions, plot: str | None) -> int:
         fault = "proves nothing that could be held to"
         raise UsageError("--method sampled", fault, "ask for --method certified")
     if plot is not None:
-        _check_plot(plot, asked)
+        check_plot(plot, asked.common.output, (asked.a, asked.b))
     files = asked.read()
     with naming_options(question):
         from obbcli.study.stability.battery import Battery
@@ -80,27 +76,6 @@ def command(asked: TwoBodyOptions, plot: str | None) -> int:
         not_tried = battery.count - len(battery.rows)
         tell_interrupted(f"not tried: {not_tried} extremes", asked.common)
     return _exit_code(record["result"], asked=asked.exit_code)
-
-
-def _check_plot(name: str, asked: TwoBodyOptions) -> None:
-    """Refuse a plot that could not be drawn, before anything is asked.
-
-    Raises:
-        UsageError: it is of another kind, over another file of the command, or matplotlib is not
-            there.
-        OutputError: its folder is not there.
-    """
-    if Path(name).suffix.lower() not in _PLOTS:
-        raise UsageError(f"--plot {name}", "is no .svg or .png file", "name one that is")
-    output = asked.common.output
-    if output is not None and Path(name).resolve() == output.resolve():
-        raise UsageError(f"--plot {name}", "is where the answer goes", "name another file")
-    if find_spec("matplotlib") is None:
-        remedy = "install it: pip install matplotlib"
-        raise UsageError("--plot", "needs the package matplotlib", remedy)
-    if not Path(name).resolve().parent.is_dir():
-        raise OutputError(name, "cannot be written: its folder is not there", "create it first")
-    keep_inputs(Path(name), (asked.a, asked.b))
 
 
 def _draw(record: Record, name: str) -> None:

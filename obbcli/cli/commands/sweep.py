@@ -243,10 +243,13 @@ def _header(
     asked: TwoBodyOptions, setting: SweepSetting, files: tuple[Input, Input], queries: Queries
 ) -> Record:
     """Return the first line of the results."""
+    from obbcli.report.rows import about_units
     from obbcli.report.sweep import header_record
     from obbcli.sweeps.results_file import with_digest
 
-    source_a, source_b = (file.source(with_sha256=True) for file in files)
+    a, b = files
+    sources = a.source(with_sha256=True), b.source(with_sha256=True)
+    sources = about_units(sources, (a.tree, b.tree))
     about = {"path": queries.name, "sha256": queries.sha256, "format": queries.format}
     given = asked.pose._asdict() | asked.motion._asdict()
     options = {
@@ -256,7 +259,7 @@ def _header(
     options |= {name: value for name, value in asked.units._asdict().items() if value is not None}
     options |= {"solid": True} if setting.solid else {}
     accuracy = setting.accuracy.as_dict()
-    return with_digest(header_record((source_a, source_b), about, options, accuracy))
+    return with_digest(header_record(sources, about, options, accuracy))
 
 
 @contextmanager

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from obbcli.cli.boundary import CancelledError, ExitCode, OutputError, UsageError, writing
+from obbcli.cli.boundary import CancelledError, ExitCode, UsageError, writing
 from obbcli.cli.inputs import STDIN, Lengths, keep_inputs, measured, read_shape
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import (
@@ -31,6 +30,7 @@ from obbcli.cli.options.placement import (
 from obbcli.cli.options.two_bodies import QUESTION, naming_options
 from obbcli.cli.options.words import Finite, PathName
 from obbcli.cli.output import emit, remark, tell_interrupted
+from obbcli.cli.plot import check_plot
 from obbcli.cli.progress import measuring
 
 if TYPE_CHECKING:
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from obbcli.report.tradeoff import Wording
     from obbcli.study.tradeoff.measuring import Study
     from obbcli.tree.tree import ObbTree
-
-_PLOTS = (".svg", ".png")
 
 
 class _Wanted(NamedTuple):
@@ -150,7 +148,9 @@ def command(asked: _TradeoffOptions) -> int:
     measured by then.
     """
     question = QuestionOptions.of(asked.pose, asked.motion, asked.accuracy)
-    _check_places(asked)
+    keep_inputs(asked.common.output, (asked.a, asked.b))
+    if asked.wanted.plot is not None:
+        check_plot(asked.wanted.plot, asked.common.output, (asked.a, asked.b))
     shapes, sources = _read(asked)
     with naming_options(question):
         study = _study(question, shapes, asked.wanted.budget)
@@ -160,34 +160,13 @@ def command(asked: _TradeoffOptions) -> int:
     return _exit_code(record["result"])
 
 
-def _check_places(asked: _TradeoffOptions) -> None:
-    """Refuse what could not be written, before anything is measured.
-
-    Raises:
-        UsageError: a plot of another kind, or over another file of the command.
-    """
-    keep_inputs(asked.common.output, (asked.a, asked.b))
-    name = asked.wanted.plot
-    if name is None:
-        return
-    if Path(name).suffix.lower() not in _PLOTS:
-        raise UsageError(f"--plot {name}", "is no .svg or .png file", "name one that is")
-    if asked.common.output is not None and Path(name).resolve() == asked.common.output.resolve():
-        raise UsageError(f"--plot {name}", "is where the answer goes", "name another file")
-    if not Path(name).resolve().parent.is_dir():
-        raise OutputError(name, "cannot be written: its folder is not there", "create it first")
-    if find_spec("matplotlib") is None:
-        remedy = "install it: pip install matplotlib"
-        raise UsageError("--plot", "needs the package matplotlib", remedy)
-    keep_inputs(Path(name), (asked.a, asked.b))
-
-
 def _read(
     asked: _TradeoffOptions,
 ) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
     """Return A and B, and what a record says of them."""
     from obbcli.files import file_of, stamp_of
     from obbcli.report.record import Source, file_sha256
+    from obbcli.report.rows import about_units
 
     if asked.a == asked.b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
@@ -204,7 +183,9 @@ def _read(
             digest = file_sha256(file_of(name), stamp)
         found[key] = shape, Source.of(name, digest, shape)
     (a, source_a), (b, source_b) = found[keys[0]], found[keys[1]]
-    return (a, b), (source_a, source_b)
+    if asked.common.quiet:
+        return (a, b), (source_a, source_b)
+    return (a, b), about_units((source_a, source_b), (a, b))
 
 
 def _study(

@@ -93,7 +93,7 @@ class TwoBodyOptions(NamedTuple):
 
         # Hashes cost time, and only a document shows them.
         is_shown = self.common.json
-        sources = [file.source(with_sha256=is_shown) for file in files]
+        sources = files[0].source(with_sha256=is_shown), files[1].source(with_sha256=is_shown)
         if not self.common.quiet:
             sources = about_units(sources, pair.trees)
         motion = shown_motion(pair.bodies, pair.duration, in_document=is_shown)
