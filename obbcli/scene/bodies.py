@@ -70,12 +70,14 @@ class SceneParts(NamedTuple):
         ignore: which of them are not asked about each other.
         duration: s; None in a file that leaves it to the default.
         accuracy: what is asked of each answer.
+        solid: whether a body inside another at t = 0 is in contact with it.
     """
 
     bodies: tuple[SceneBody, ...]
     ignore: tuple[Ignore, ...]
     duration: float | None
     accuracy: Accuracy
+    solid: bool = False
 
 
 def as_bodies(bodies: Bodies) -> tuple[SceneBody, ...]:

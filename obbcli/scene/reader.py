@@ -1,9 +1,9 @@
 """Scene files: TOML or JSON, all keys known, all values of their kinds, or one clear error.
 
-`duration`, `accuracy = {..}` with the fields of `Accuracy`, `[[body]]` with `name`, `mesh` (a path
-that begins at the file's folder), `pose = {rotation, translation}`, `motion = {linear_velocity,
-angular_velocity, pivot}` or `{times, poses}`, `static` and `group`, and `[[ignore]]` with `bodies`
-or `groups`.
+`duration`, `solid`, `accuracy = {..}` with the fields of `Accuracy`, `unit`, `[[body]]` with `name`,
+`mesh` (a path that begins at the file's folder), `unit`, `scale`, `weld`, `pose = {rotation,
+translation}`, `motion = {linear_velocity, angular_velocity, pivot}` or `{times, poses}`, `static`
+and `group`, and `[[ignore]]` with `bodies` or `groups`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ T = TypeVar("T")
 # Some 300,000 bodies. To find out that something longer is no scene would take minutes.
 _MOST_BYTES = 64 << 20
 _LONG_NUMBER = "a number has too many digits"
-_KEYS = ("duration", "accuracy", "unit", "body", "ignore")
+_KEYS = ("duration", "accuracy", "solid", "unit", "body", "ignore")
 _BODY_KEYS = ("name", "mesh", "unit", "scale", "weld", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
 _PATH_KEYS = ("times", "poses")
@@ -171,12 +171,15 @@ class _Reader:
         accuracy = tree.get("accuracy", {})
         where = self._at("accuracy")
         self._table(accuracy, _ACCURACY_KEYS, where)
-        duration = tree.get("duration")
+        duration, solid = tree.get("duration"), tree.get("solid", False)
+        if not isinstance(solid, bool):
+            raise SceneError(self._at("solid"), f"is {shown(solid)}", "use true or false")
         return SceneParts(
             bodies,
             self._named("", as_ignored, ignore, bodies),
             None if duration is None else finite_number(duration, self._at("duration"), least=0),
             self._named("accuracy.", Accuracy, **accuracy),
+            solid,
         )
 
     def _bodies(self, tables: list[dict[str, Any]]) -> tuple[SceneBody, ...]:

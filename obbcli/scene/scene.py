@@ -42,6 +42,7 @@ class Scene:
             motions through poses, else 1 where anything moves, else 0.
         accuracy: what is asked of each answer. `max_iterations` holds for a pair, `timeout` for all
             together. None: the defaults.
+        solid: whether a body inside another at t = 0 is contact too, where a question does not say.
         verify: whether the checksums of tree files are compared.
 
     Attributes:
@@ -49,6 +50,7 @@ class Scene:
         ignore: the pairs that are not asked about, checked.
         duration: s.
         accuracy: as used.
+        solid: as given.
 
     Raises:
         SceneError: no bodies, two of one name, or `ignore` names what is not there.
@@ -70,6 +72,7 @@ class Scene:
         duration: float | None = None,
         accuracy: Accuracy | None = None,
         *,
+        solid: bool = False,
         verify: bool = True,
     ) -> None:
         self.bodies: tuple[SceneBody, ...] = as_bodies(bodies)
@@ -78,7 +81,10 @@ class Scene:
         self.accuracy = Accuracy() if accuracy is None else accuracy
         if not isinstance(self.accuracy, Accuracy):
             raise SceneError("accuracy", f"is {accuracy!r}", "pass an Accuracy")
-        self._parts = SceneParts(self.bodies, self.ignore, self.duration, self.accuracy)
+        if not isinstance(solid, bool):
+            raise SceneError("solid", f"is {solid!r}", "use True or False")
+        self.solid = solid
+        self._parts = SceneParts(self.bodies, self.ignore, self.duration, self.accuracy, solid)
         self._shapes = Shapes(verify=verify)
 
     @classmethod
@@ -100,13 +106,14 @@ class Scene:
         if is_mesh_file(path):
             return cls(load_parts(path), verify=verify)
         parts = read_scene(path)
-        return cls(parts.bodies, parts.ignore, parts.duration, parts.accuracy, verify=verify)
+        bodies, ignore, duration, accuracy, solid = parts
+        return cls(bodies, ignore, duration, accuracy, solid=solid, verify=verify)
 
     def first_contacts(
         self,
         first: bool = False,
         pairs: Iterable[tuple[str, str]] | None = None,
-        solid: bool = False,
+        solid: bool | None = None,
     ) -> FirstContacts:
         """Return the first contact of every pair that touches, in order of time.
 
@@ -120,7 +127,8 @@ class Scene:
                 None: all.
             solid: whether a body inside another at t = 0 is contact too, without touching, as of
                 `first_contact`. Bodies that may be inside another or hold one have to be
-                watertight; of those whose boxes are apart at t = 0 that is not asked.
+                watertight; of those whose boxes are apart at t = 0 that is not asked. None: as the
+                scene says.
 
         Returns:
             an iterator of `SceneContact` that also has `stats`.
@@ -132,11 +140,15 @@ class Scene:
             TreeFileError: a tree file is damaged.
             OSError: a file cannot be read.
         """
-        asked = ScenePairs(self._parts, self._shapes, pairs, solid=solid)
+        asks_solids = self.solid if solid is None else solid
+        asked = ScenePairs(self._parts, self._shapes, pairs, solid=asks_solids)
         return FirstContacts(asked, first=first)
 
     def contacts(
-        self, limit: int | None = None, pairs: Iterable[tuple[str, str]] | None = None
+        self,
+        limit: int | None = None,
+        pairs: Iterable[tuple[str, str]] | None = None,
+        solid: bool | None = None,
     ) -> AllContacts:
         """Return the first contact of every pair of triangles that touches, in order of time.
 
@@ -147,6 +159,8 @@ class Scene:
         Args:
             limit: at most so many contacts. None: all.
             pairs: as of `first_contacts`.
+            solid: False lists the triangles of a scene of solids too; True is refused, as a body
+                inside another has none that touch. None: as the scene says.
 
         Returns:
             an iterator of `SceneContact` that also has `stats`.
@@ -154,10 +168,14 @@ class Scene:
         Raises:
             MotionError: `limit` is no whole number of at least 1, or the sampled method is asked
                 for, which knows the first contact alone.
-            SceneError, MeshError, TreeFileError, OSError: as `first_contacts`.
+            SceneError: solids are asked about; and as `first_contacts`.
+            MeshError, TreeFileError, OSError: as `first_contacts`.
         """
         from obbcli.scene.all_contacts import AllContacts
 
+        if self.solid if solid is None else solid:
+            fault = "asks about solids, and a body inside another has no triangles that touch"
+            raise SceneError("solid", fault, "ask for first_contacts, or with solid=False")
         most = None if limit is None else whole_limit(limit)
         return AllContacts(ScenePairs(self._parts, self._shapes, pairs), most)
 

@@ -51,3 +51,39 @@ def test_triangles_are_not_listed_of_solids(job, obbtree):
 
     assert ended.code == 2
     assert "--all-contacts: lists triangles that meet, and a body inside" in ended.err
+
+
+def test_scene_file_may_ask_about_solids(job, obbtree):
+    (job / "solid.toml").write_text("solid = true\n" + (job / "job.toml").read_text())
+    (job / "surface.toml").write_text("solid = false\n" + (job / "job.toml").read_text())
+
+    asked = obbtree("scene", "job.toml", "--solid", "--json").json
+    told = obbtree("scene", "solid.toml", "--json").json
+
+    assert (told["solid"], told["result"]) == (True, asked["result"])
+    assert "solid" not in obbtree("scene", "surface.toml", "--json").json
+    assert obbtree("scene", "surface.toml", "--solid", "--json").json["result"] == told["result"]
+    ended = obbtree("scene", "solid.toml", "--all-contacts")
+    assert ended.code == 2
+    assert "--all-contacts: lists triangles that meet, and the scene asks about so" in ended.err
+
+
+@pytest.mark.parametrize("value", ["1", '"yes"', "[]"])
+def test_scene_file_asks_about_solids_by_true_or_false(job, obbtree, value):
+    (job / "job.toml").write_text(f"solid = {value}\n" + (job / "job.toml").read_text())
+
+    ended = obbtree("scene", "job.toml")
+
+    assert ended.code == 3
+    assert "job.toml: solid: is " in ended.err
+    assert "use true or false" in ended.err
+
+
+def test_solid_is_no_key_of_a_body(job, obbtree):
+    text = (job / "job.toml").read_text()
+    (job / "job.toml").write_text(text + "solid = true\n")
+
+    ended = obbtree("scene", "job.toml")
+
+    assert ended.code == 3
+    assert "body[2] 'lid': unknown key 'solid'" in ended.err

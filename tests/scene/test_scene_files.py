@@ -156,7 +156,10 @@ LID = "body[0] 'lid'"
 HUGE = 10**400
 REFUSED = {
     "unknown key": (set_at(1, "durations"), "unknown key 'durations'; did you mean 'duration'?"),
-    "far from any key": (set_at(1, "x"), "unknown key 'x'; known are duration, accuracy, unit"),
+    "far from any key": (
+        set_at(1, "x"),
+        "unknown key 'x'; known are duration, accuracy, solid, unit",
+    ),
     "key of a body": (set_at("x", *BODY, "msh"), f"{LID}: unknown key 'msh'; did you mean 'mesh'?"),
     "key of a pose": (set_at([0], *BODY, "pose", "rotate"), f"{LID}.pose: unknown key 'rotate'"),
     "key of a motion": (

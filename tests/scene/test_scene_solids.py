@@ -15,6 +15,7 @@ from obbcli import (
     Pose,
     Scene,
     SceneBody,
+    SceneError,
     collide,
 )
 
@@ -116,3 +117,26 @@ def test_trees_of_files_are_asked_as_solids(tmp_path):
     (found,) = scene.first_contacts(solid=True)
 
     assert found.contact.contained == "b"
+
+
+def test_scene_of_solids_is_asked_about_as_such_where_a_question_does_not_say():
+    bodies = {"box": block(CUBE.scaled(3)), "pin": block(CUBE.scaled(0.5))}
+    solids, surfaces = Scene(bodies, solid=True), Scene(bodies)
+
+    assert (solids.solid, surfaces.solid) == (True, False)
+    assert [one.contact.contained for one in solids.first_contacts()] == ["b"]
+    assert list(solids.first_contacts()) == list(surfaces.first_contacts(solid=True))
+    assert list(solids.first_contacts(solid=False)) == list(surfaces.first_contacts()) == []
+    with pytest.raises(SceneError, match="solid: is 1; use True or False"):
+        Scene(bodies, solid=1)
+
+
+def test_triangles_of_solids_are_listed_as_of_surfaces_alone():
+    bodies = {"box": block(CUBE), "pin": block(CUBE.scaled(0.5), (0.75, 0, 0))}
+    solids, surfaces = Scene(bodies, solid=True), Scene(bodies)
+
+    for refused in (solids.contacts, lambda: surfaces.contacts(solid=True)):
+        with pytest.raises(SceneError, match="solid: asks about solids, and a body inside another"):
+            refused()
+    assert list(solids.contacts(solid=False)) == list(surfaces.contacts())
+    assert list(surfaces.contacts())

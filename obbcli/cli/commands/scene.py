@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from obbcli.cli.boundary import ExitCode, UsageError
-from obbcli.cli.inputs import STDIN, keep_inputs, read_stdin
+from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import Command, common_options, option, verify_option
 from obbcli.cli.options.two_bodies import QUESTION
 from obbcli.cli.options.words import Finite, PathName, Whole
 from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import proving
+from obbcli.cli.scene_files import read_scene
 from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
     from obbcli.cli.options.option import CommonOptions
+    from obbcli.cli.scene_files import Stamps
     from obbcli.mesh import Mesh
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
     from obbcli.scene.results import SceneContact
     from obbcli.tree.head import TreeHead
     from obbcli.tree.tree import ObbTree
-
-    Stamps: TypeAlias = dict[str, tuple[int, ...] | None]
-
-_STDIN_NAME = "<stdin>"
 
 
 class _Wanted(NamedTuple):
@@ -100,10 +97,10 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     """
     wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
     _refuse_contradictions(wanted)
-    scene, source, stamps = _read(file, accuracy, flags["duration"], verify=not flags["no_verify"])
-    if wanted.all_contacts and scene.accuracy.method == "sampled":
-        fault = "lists contacts of triangles, and sampling finds the first contact alone"
-        raise UsageError("--all-contacts", fault, "ask for --method certified")
+    scene, source, stamps = read_scene(
+        file, accuracy, flags["duration"], verify=not flags["no_verify"]
+    )
+    _refuse_of_scene(wanted, scene)
     keep_inputs(common.output, (file, *stamps))
     found = _ask(scene, wanted)
     answer = _run(found, wanted, progress=common.shows_progress)
@@ -125,48 +122,14 @@ def _refuse_contradictions(wanted: _Wanted) -> None:
         raise UsageError("--all-contacts", fault, "leave out it or --solid")
 
 
-def _read(
-    file: str, options: AccuracyOptions, duration: float | None, *, verify: bool
-) -> tuple[Scene, Source, Stamps]:
-    """Return the scene as asked about, its file, and what the files of its bodies are by now."""
-    from obbcli.files import file_of, stamp_of
-    from obbcli.mesh import digest_of
-    from obbcli.report.record import Source
-    from obbcli.scene import Scene
-    from obbcli.scene.reader import parse_scene, read_bytes
-    from obbcli.scene.scene import is_mesh_file
-
-    if file != STDIN and is_mesh_file(file):
-        return _read_parts(file, options, duration)
-    name = _STDIN_NAME if file == STDIN else file
-    data = read_stdin() if file == STDIN else read_bytes(Path(file), name)
-    folder = Path() if file == STDIN else Path(file).parent
-    parts = parse_scene(data, name, folder, is_json=name.lower().endswith(".json"))
-    paths = {str(body.body.shape) for body in parts.bodies}
-    stamps = {path: stamp_of(file_of(path)) for path in paths}
-    scene = Scene(
-        parts.bodies,
-        parts.ignore,
-        parts.duration if duration is None else duration,
-        options.accuracy(parts.accuracy),
-        verify=verify,
-    )
-    return scene, Source(file, digest_of(data)(), None), stamps
-
-
-def _read_parts(
-    file: str, options: AccuracyOptions, duration: float | None
-) -> tuple[Scene, Source, Stamps]:
-    """Return the parts of a mesh file as a scene, as `_read`."""
-    from obbcli.files import file_of, stamp_of
-    from obbcli.motion.assembly import load_parts
-    from obbcli.report.record import Source
-    from obbcli.scene import Scene
-
-    stamps = {file: stamp_of(file_of(file))}
-    assembly = load_parts(file)
-    scene = Scene(assembly, (), duration, options.accuracy())
-    return scene, Source(file, assembly.sha256, None), stamps
+def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
+    """Refuse what does not go together with what the scene's file says."""
+    if wanted.all_contacts and scene.solid:
+        fault = "lists triangles that meet, and the scene asks about solids"
+        raise UsageError("--all-contacts", fault, "leave out it, or solid = true in the scene")
+    if wanted.all_contacts and scene.accuracy.method == "sampled":
+        fault = "lists contacts of triangles, and sampling finds the first contact alone"
+        raise UsageError("--all-contacts", fault, "ask for --method certified")
 
 
 def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
@@ -176,7 +139,7 @@ def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
     try:
         if wanted.all_contacts:
             return scene.contacts(wanted.limit, pairs)
-        return scene.first_contacts(wanted.first, pairs, wanted.solid)
+        return scene.first_contacts(wanted.first, pairs, wanted.solid or None)
     except SceneError as fault:
         # What is typed is usage.
         raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault
