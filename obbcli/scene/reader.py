@@ -1,9 +1,9 @@
 """Scene files: TOML or JSON, all keys known, all values of their kinds, or one clear error.
 
-`duration`, `solid`, `accuracy = {..}` with the fields of `Accuracy`, `unit`, `[[body]]` with `name`,
-`mesh` (a path that begins at the file's folder), `unit`, `scale`, `weld`, `pose = {rotation,
-translation}`, `motion = {linear_velocity, angular_velocity, pivot}` or `{times, poses}`, `static`
-and `group`, and `[[ignore]]` with `bodies` or `groups`.
+`duration`, `solid`, `unit`, `accuracy = {..}` with the fields of `Accuracy`, `[[body]]` with
+`name`, `mesh` (a path from the file's folder on), `unit`, `scale`, `weld`, `static`, `group`,
+`pose = {rotation, translation}`, `motion = {linear_velocity, angular_velocity, pivot}` or `{times,
+poses}`, and `[[ignore]]` with `bodies` or `groups`.
 """
 
 from __future__ import annotations
