@@ -137,11 +137,14 @@ class Part:
             return self.pose.apply(self.mesh.bounds)
         x, y, z = _coordinates(self.shape)
         low, high = [], []
-        # As `Pose.apply`, but an axis at a time, which takes a tenth of its time.
+        # As `Pose.apply`, but an axis at a time, which takes a tenth of its time. The shift comes
+        # last, and rounds the ends to the ends.
         for (p, q, r), shift in zip(self.pose.rotation, self.pose.translation, strict=True):
-            row = p * x + q * y + r * z + shift
-            low.append(float(row.min()))
-            high.append(float(row.max()))
+            row = p * x
+            row += q * y
+            row += r * z
+            low.append(float(row.min() + shift))
+            high.append(float(row.max() + shift))
         return np.array([low, high])
 
     def __repr__(self) -> str:
