@@ -201,10 +201,11 @@ def load_parts(path: str | os.PathLike[str]) -> Assembly:
     """Return the parts of a mesh file; what they hold is decoded when it is asked for.
 
     Nodes of glTF and COLLADA, objects of 3MF, `o` of OBJ (`g` where no `o` stands), solids of an
-    ASCII STL, blocks of VTK's index, instances of Abaqus, zones of Tecplot and SU2 are parts; any
-    other file is one, whose path is empty. Parts that are placed copies of one mesh share it. A
-    pose turns and shifts alone: what a file mirrors or scales has a mesh of its own, in which that
-    is done. All parts, placed and joined, are what `load_mesh` returns, row for row and bit by bit.
+    ASCII STL, blocks of VTK's index, instances of Abaqus, superelements of Nastran, zones of
+    Tecplot and SU2 are parts; any other file is one, whose path is empty. Parts that are placed
+    copies of one mesh share it. A pose turns and shifts alone: what a file mirrors or scales has a
+    mesh of its own, in which that is done. All parts, placed and joined, are what `load_mesh`
+    returns, row for row and bit by bit.
 
     Args:
         path: the file, or `"FILE#PATTERN"`.

@@ -127,19 +127,18 @@ def _without_repeats(section: Section, found: list[Elements]) -> list[Elements]:
     ]
 
 
-def cell_blocks(section: Section, found: list[Elements], first_point: int) -> list[Block]:
+def cell_blocks(section: Section, found: list[Elements]) -> list[Block]:
     """Return elements as cells of VTK's types, which know their places in the deck.
 
     Args:
         section: whose elements they are.
         found: the elements of each name.
-        first_point: the row of the section's first GRID among all points.
     """
     blocks = []
     for part in found:
         element = known.ELEMENTS[part.name]
         places = section.lines.numbers[part.lines]
-        nodes = np.where(part.nodes >= 0, part.nodes + first_point, -1)
+        nodes = part.nodes
         for count in element.node_counts:
             # Cells of the fewest nodes that hold all theirs: the first count is of corners alone.
             fits = (nodes[:, count:] < 0).all(axis=1)

@@ -8,23 +8,22 @@ Reference Guides. Whatever makes, places or copies surface is taken or refused b
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from obbcli.mesh.formats.cells.surface import Block, surface
+from obbcli.mesh.formats.cells.parts import CellPart, joined_surface
+from obbcli.mesh.formats.nastran import cards as known
 from obbcli.mesh.formats.nastran.checks import check_continuations, check_names, tell_of
-from obbcli.mesh.formats.nastran.deck import Deck
+from obbcli.mesh.formats.nastran.deck import MAIN, Deck
 from obbcli.mesh.formats.nastran.elements import Elements, cell_blocks, read_elements
 from obbcli.mesh.formats.nastran.grids import read_grids
 from obbcli.mesh.formats.nastran.lines import Lines
 from obbcli.mesh.formats.nastran.section import Section
 from obbcli.mesh.formats.text import counted
+from obbcli.mesh.parts.placed import PlacedPart, UniquePaths
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
+    from collections.abc import Iterator, Mapping
 
     from obbcli.errors import MeshError
     from obbcli.mesh.formats.nastran.lines import Cards
@@ -44,28 +43,73 @@ def read_nastran(source: Source) -> MeshArrays:
         MeshError: a card that could make surface and is not read, a field that is no number, a
             GRID, system or included file that is missing, no shell or solid.
     """
+    bodies = _bodies(source)
+    parts, elements = [], []
+    for body in bodies:
+        part, found = body.cells()
+        parts.append(part)
+        elements += found
+    _tell_offsets(source, elements)
+    return joined_surface(source, parts)
+
+
+def parts_nastran(source: Source) -> Iterator[PlacedPart]:
+    """Yield the superelements of a deck; the GRIDs and elements of each are read when it is asked.
+
+    Cards are found and looked at throughout, as one may place another superelement.
+
+    Raises:
+        MeshError: as `read_nastran`; what is wrong with a part's own fields, when it is decoded.
+    """
+    paths = UniquePaths()
+    for body in _bodies(source):
+        yield PlacedPart(paths.take(body.name), body.name, partial(_decoded, source, body))
+
+
+def _decoded(source: Source, body: _Body) -> MeshArrays:
+    part, elements = body.cells()
+    _tell_offsets(source, elements)
+    return joined_surface(source, [part])
+
+
+class _Body(NamedTuple):
+    """Holds a section of bulk data that has shells or solids.
+
+    Args:
+        name: `SUPER=n`, or "" where it is no superelement's.
+        section: its lines and cards.
+    """
+
+    name: str
+    section: Section
+
+    def cells(self) -> tuple[CellPart, list[Elements]]:
+        """Return its cells, and the elements that they are made of.
+
+        Raises:
+            MeshError: a field is none, a GRID or a system is missing; with the line.
+        """
+        grids = read_grids(self.section)
+        found = read_elements(self.section, grids)
+        return CellPart(self.name, grids.places, cell_blocks(self.section, found)), found
+
+
+def _bodies(source: Source) -> list[_Body]:
+    """Return what has surface, after a look at all cards; notes tell what they change."""
     deck = Deck(source)
-    points: list[NDArray[np.float64]] = []
-    blocks: list[Block] = []
-    cards, elements, before = [], [], 0
+    sections = []
     for part in deck.sections:
         lines = Lines(deck, part)
         section = Section(deck, lines, lines.cards())
         check_continuations(deck, lines)
         check_names(deck, lines, section.cards)
-        grids = read_grids(section)
-        found = read_elements(section, grids)
-        blocks += cell_blocks(section, found, before)
-        points.append(grids.places)
-        cards.append(section.cards)
-        elements += found
-        before += len(grids.places)
-    if not blocks:
+        sections.append(("" if part.name == MAIN else part.name, section))
+    cards = [section.cards for _, section in sections]
+    bodies = [_Body(*each) for each in sections if known.ELEMENTS.keys() & each[1].cards.keys()]
+    if not bodies:
         raise _without_surface(source, cards)
     tell_of(deck, cards)
-    _tell_offsets(source, elements)
-    vertices = np.concatenate(points)
-    return vertices, surface(source, vertices, blocks)
+    return bodies
 
 
 def _tell_offsets(source: Source, elements: list[Elements]) -> None:
