@@ -11,7 +11,7 @@ import numpy as np
 
 from obbcli.errors import MotionError
 from obbcli.files import file_and_pattern
-from obbcli.mesh import measure
+from obbcli.mesh import Mesh, measure
 from obbcli.mesh.parts.load import read_parts
 from obbcli.mesh.parts.placed import placed
 from obbcli.mesh.parts.selection import selected
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from obbcli.mesh.mesh import Mesh
     from obbcli.mesh.parts.load import FileParts
     from obbcli.mesh.parts.placed import PlacedPart
 
@@ -111,6 +110,42 @@ class Part:
     def body(self) -> Body:
         """The part at rest where the file puts it, as questions take it."""
         return Body(self.shape, self.pose)
+
+    def posed(self, pose: Pose, *, is_absolute: bool) -> tuple[Mesh | LazyMesh, Pose]:
+        """Return a shape and its pose, which together are the part moved by `pose`.
+
+        Parts of one mesh go on to share it where `pose` moves nothing. Otherwise vertices are
+        rounded where the file puts them and then by `pose`, as those of the file's mesh are.
+
+        Args:
+            pose: from the file's world to where the part is.
+            is_absolute: whether other poses than this one follow, of the file's world.
+        """
+        if pose.is_identity and not is_absolute:
+            return self.shape, self.pose
+        return self._placed, pose
+
+    @cached_property
+    def _placed(self) -> Mesh | LazyMesh:
+        """The part in the file's world; bodies of all poses share it."""
+        return self.shape if self.pose.is_identity else LazyMesh(self._placed_mesh)
+
+    def _placed_mesh(self) -> Mesh:
+        mesh = self.mesh
+        vertices = self.vertices()
+        vertices.setflags(write=False)
+        about = mesh.source, mesh.sha256, mesh.notes
+        return Mesh(vertices, mesh.triangles, *about, unit=mesh.unit)
+
+    @property
+    def placed_mesh(self) -> Mesh:
+        """The mesh in the file's world, as `load_mesh("FILE#PATTERN")` returns it.
+
+        Raises:
+            MeshError: the part is damaged, or a coordinate leaves the range of double.
+        """
+        placed = self._placed
+        return placed.mesh if isinstance(placed, LazyMesh) else placed
 
     @property
     def mesh(self) -> Mesh:

@@ -31,16 +31,30 @@ class Surface(Protocol):
         """The default pivot, unposed, (3,)."""
 
 
-Shape: TypeAlias = Surface | str | os.PathLike[str]
+class Standing(Protocol):
+    """A shape that says where it stands: a `Part` of a file."""
+
+    @property
+    def body(self) -> Body:
+        """The shape at rest where it stands."""
+
+    def posed(self, pose: Pose, *, is_absolute: bool) -> tuple[Surface, Pose]:
+        """Return a surface and its pose, of which the shape is made that `pose` moves."""
+
+
+# What bodies are made of, and what may be given for it.
+BodyShape: TypeAlias = Surface | str | os.PathLike[str]
+Shape: TypeAlias = BodyShape | Standing
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class Body:
-    """A shape with its place and motion; taken wherever a tree, a mesh or a path is.
+    """A shape with its place and motion; taken wherever a tree, a mesh, a part or a path is.
 
     Args:
-        shape: an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
-        pose: where it is at t = 0; that of the motion where this goes through poses.
+        shape: an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
+        pose: where it is at t = 0; that of the motion where this goes through poses. It moves a
+            `Part` from where its file puts it.
         motion: how it moves from there.
 
     Raises:
@@ -53,20 +67,25 @@ class Body:
         [0.0, 0.0, 1.0]
     """
 
-    shape: Shape
+    shape: BodyShape
     pose: Pose
     motion: Motion
 
     def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
         # Trees belong to a layer above this one, so a shape is told by its attributes; by those of
         # its type, since to ask a tree for its bounds may read a whole file.
+        posed = None
         if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
-            refuse("shape", shape, "pass an ObbTree, a Mesh or a path")
+            posed = getattr(shape, "posed", None)
+            if posed is None:
+                refuse("shape", shape, "pass an ObbTree, a Mesh, a Part or a path")
         if not isinstance(pose, Pose):
             refuse("pose", pose, "pass a Pose")
         if not isinstance(motion, Motion):
             refuse("motion", motion, "pass a Motion")
         pose = motion.first_pose(pose)
+        if posed is not None:
+            shape, pose = posed(pose, is_absolute=motion.places_mesh)
         # The fields are set past the frozen dataclass, whose own way takes three times as long.
         fields = vars(self)
         fields["shape"] = shape
@@ -135,6 +154,4 @@ def as_body(shape: Body | Shape) -> Body:
     """
     if isinstance(shape, Body):
         return shape
-    # A `Part` says so itself: its module is imported by those who load parts.
-    placed = getattr(shape, "body", None)
-    return placed if isinstance(placed, Body) else Body(shape)
+    return Body(shape)

@@ -35,7 +35,7 @@ def collide(
     method (`Accuracy`), all but contact at t = 0 is `approximate`, `separated` too.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: limits and coarseness; None: the exact answer.

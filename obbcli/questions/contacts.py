@@ -51,7 +51,7 @@ def contacts(
     pair of boxes is one contact.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of each contact. Its limits hold for the iterator as a whole.

@@ -32,7 +32,7 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
     nothing about bodies at rest and are not used; motions play no part.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         accuracy: limits and coarseness; None: as close as doubles allow.
 

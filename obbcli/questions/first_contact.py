@@ -75,7 +75,7 @@ class Query:
     contact that only such nearness shows is `"within_tolerance"`.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; the closed interval [0, duration] is asked about. None: 1 where a body moves,
             else 0.
@@ -260,7 +260,7 @@ def first_contact(
     holds for paths that are off the true ones by up to `error_bound`, but for contact at t = 0.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of the answer, and the limits after which it is `unresolved`.

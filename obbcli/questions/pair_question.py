@@ -58,7 +58,7 @@ class PairQuestion(NamedTuple):
         """Return the question about two shapes, which are read and given trees where need be.
 
         Args:
-            a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+            a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
             b: as `a`.
             duration: s; None: as `duration_of` says.
             accuracy: None: the defaults.
@@ -199,7 +199,7 @@ def surface_of(shape: Shape) -> Mesh | ObbTree:
     if isinstance(decoded, Mesh):
         return decoded
     raise MotionError(
-        "shape", f"is of type {type(shape).__name__}", "pass a tree, a mesh or a path"
+        "shape", f"is of type {type(shape).__name__}", "pass a tree, a mesh, a part or a path"
     )
 
 

@@ -46,7 +46,7 @@ def triangle_pairs(
     the numbers of triangles: `triangle_pair_blocks` yields them some at a time.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         limit: stop after so many pairs, and return those, sorted. Which ones depends on the trees.
             One thread looks for them.
@@ -100,7 +100,7 @@ def triangle_pair_blocks(
     each with a tree of its own that grows as far as needed; that takes about twice as long.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         most: pairs a block, at most; more only where a single triangle of A has more.
         threads: at most so many; None: as many as this process may use cores. They change nothing

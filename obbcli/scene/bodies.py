@@ -27,7 +27,7 @@ class SceneBody:
 
     Args:
         name: what contacts call it; no other body of the scene has it.
-        body: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        body: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         static: whether it stands still and is never asked about others that do.
         group: what `ignore` may call it together with others; None: it belongs to none.
 

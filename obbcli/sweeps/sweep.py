@@ -51,8 +51,8 @@ def sweep(
     at every few milliseconds.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file; its pose is where
-            every row starts.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file; its pose
+            is where every row starts.
         b: the other shape, of the same kinds.
         motions_a: how A moves: a `Motion` a row, or floats (N, 6), V and W a row, or (N, 9) with
             the pivots. One motion stands for all rows. None: as the body itself says.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
+    from obbcli.motion.assembly import Part
     from obbcli.tree.options import Fit, Split
 
 
@@ -31,7 +32,7 @@ class ObbTree(TreeFacts):
     @classmethod
     def build(
         cls,
-        mesh_or_path: Mesh | str | os.PathLike[str],
+        mesh_or_path: Mesh | Part | str | os.PathLike[str],
         fit: Fit = DEFAULT_BUILD.fit,
         split: Split = DEFAULT_BUILD.split,
         leaf_size: int = DEFAULT_BUILD.leaf_size,
@@ -47,7 +48,7 @@ class ObbTree(TreeFacts):
         every machine. Between slices of the work other threads and signals get their turn.
 
         Args:
-            mesh_or_path: the mesh, or the file to load it from.
+            mesh_or_path: the mesh, a `Part` where its file puts it, or the file to load it from.
             fit: orients a box by the spread of its triangles' area (`"triangles"`, §6.1.3 with its
                 weights mended), of their corners (`"points"`, §6.1.2), of their convex hull's area
                 (`"hull"`), for the least volume (`"min-volume"`, §6.1.1: nearly; slow to build), or
@@ -74,7 +75,12 @@ class ObbTree(TreeFacts):
             >>> tree.triangle_count, tree.levels[0].box_count
             (3896, 1)
         """
-        mesh = mesh_or_path if isinstance(mesh_or_path, Mesh) else load_mesh(mesh_or_path)
+        mesh = mesh_or_path
+        if not isinstance(mesh, Mesh):
+            # A `Part` stands where its file puts it, as the path `"FILE#PATTERN"` would take it.
+            placed = getattr(mesh, "placed_mesh", None)
+            # Only a part is no path.
+            mesh = placed if isinstance(placed, Mesh) else load_mesh(mesh)  # type: ignore[arg-type]
         options = BuildOptions(fit, split, leaf_size, max_depth)
         growth = Growth(mesh, options, max_memory, on_demand=lazy)
         return cls(growth if lazy else WholeTree(growth.arrays(progress)))

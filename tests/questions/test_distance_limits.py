@@ -198,7 +198,7 @@ def test_distance_takes_paths_trees_and_meshes_alike(tmp_path):
 
 
 def test_distance_refuses_what_is_no_shape():
-    with pytest.raises(obbcli.MotionError, match="pass an ObbTree, a Mesh or a path"):
+    with pytest.raises(obbcli.MotionError, match="pass an ObbTree, a Mesh, a Part or a path"):
         obbcli.distance(42, obbcli.Mesh(*soup(1)))
 
 

@@ -164,7 +164,7 @@ def test_touching_points_far_apart_in_size_are_found() -> None:
 def test_bodies_are_asked_about_by_their_shapes_alone() -> None:
     moving = Mover(*cube(), velocity=X)
 
-    with pytest.raises(MotionError, match="pass an ObbTree, a Mesh or a path"):
+    with pytest.raises(MotionError, match="pass an ObbTree, a Mesh, a Part or a path"):
         obbcli.first_contact(as_body(moving), 42)  # type: ignore[arg-type]
 
 

@@ -47,7 +47,7 @@ class Battery:
     """All extremes of a question, tried one by one.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of every answer. None: the defaults.
@@ -200,7 +200,7 @@ def stability(
     taken away. What may change is bounded by what that did to the input.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what is asked of every answer; an extreme may take 200 times the queue pops of the

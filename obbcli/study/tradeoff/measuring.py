@@ -56,8 +56,8 @@ class Study:
     """The trade of one question. `run` may be interrupted: `result` has what was measured by then.
 
     Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, or the path of a mesh or tree file. A tree is used as
-            it is; to see how others would do, give the mesh.
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
+            A tree is used as it is; to see how others would do, give the mesh.
         b: the other shape, of the same kinds.
         duration: s; None: 1 where a body moves, else 0.
         accuracy: what the user would ask with: it is measured as well, and all settings share its
