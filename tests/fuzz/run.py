@@ -37,9 +37,10 @@ class TooLongError(BaseException):
 
 def targets() -> dict[str, Target]:
     """Return all targets by their names."""
-    from fuzz import mesh_targets, text_targets, tree_targets
+    from fuzz import mesh_targets, part_targets, text_targets, tree_targets
 
-    return {**tree_targets.TARGETS, **mesh_targets.TARGETS, **text_targets.TARGETS}
+    rooms = tree_targets, mesh_targets, part_targets, text_targets
+    return {name: target for room in rooms for name, target in room.TARGETS.items()}
 
 
 def corpus(name: str) -> list[bytes]:

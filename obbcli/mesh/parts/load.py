@@ -42,13 +42,18 @@ def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool =
         MeshError: as `load_mesh`.
     """
     contents = read_parts(path, pattern, hashed=hashed)
+    source = contents.source
     arrays, rows, first = [], [], 0
     for part in contents.parts:
-        arrays.append(part.placed())
-        count = len(arrays[-1][1])
-        rows.append(PartRows(part.path, first, count))
-        first += count
-    source = contents.source
+        placed = part.placed()
+        count = len(placed[1])
+        if count:
+            arrays.append(placed)
+            rows.append(PartRows(part.path, first, count))
+            first += count
+    if not rows:
+        fault = f"part '{contents.parts[0].path}' has no faces"
+        raise source.error(fault, "leave it out: a mesh is a surface of triangles")
     kind = contents.parts[0].kind
     if kind and len(rows) > 1:
         source.note(f"{counted(len(rows), kind)} taken as one surface")

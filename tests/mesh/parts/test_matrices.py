@@ -14,7 +14,7 @@ from mesh_files import collada_files, threemf_files
 from mesh_files.cube_files import CUBE_FACES, cube
 from mesh_files.gltf_files import Builder, glb
 
-from obbcli import load_mesh, load_parts
+from obbcli import Mesh, distance, load_mesh, load_parts
 from obbcli.mesh import load_mesh_bytes
 
 CUBE = np.array(cube())
@@ -125,6 +125,25 @@ def test_outside_of_a_mirrored_part_stays_outside(suffix, name):
 
     wanted = abs(determinant(MATRICES[name]))
     assert abs(volume(found) - wanted) < Fraction(1, 10**12) * wanted
+
+
+@pytest.mark.parametrize("suffix", list(WRITERS))
+@pytest.mark.parametrize("name", list(MATRICES))
+def test_placed_part_answers_as_a_mesh_that_is_placed_bit_for_bit(tmp_path, suffix, name):
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(WRITERS[suffix](MATRICES[name]))
+    (part,) = load_parts(path)
+    probe = Mesh(np.array(cube((3.3, 0.2, 0.4))) * 0.7, CUBE_FACES, unit=part.unit)
+
+    for swapped in (False, True):
+        placed, baked = (
+            distance(*((probe, one) if swapped else (one, probe)))
+            for one in (part, load_mesh(path))
+        )
+        assert (placed.bounds, placed.triangle_a, placed.triangle_b) == (
+            *(baked.bounds, baked.triangle_a),
+            baked.triangle_b,
+        )
 
 
 @pytest.mark.parametrize("suffix", list(WRITERS))
