@@ -105,7 +105,7 @@ def moving_query(
         TreeFileError: a tree file is damaged.
     """
     (a, b), (tree_a, tree_b) = pair.bodies, pair.trees
-    screw_a, screw_b = _screw(a, tree_a), _screw(b, tree_b)
+    screw_a, screw_b = screw_of(a, tree_a), screw_of(b, tree_b)
     try:
         return kernels.ContactQuery(
             tree_a.kernel,
@@ -126,7 +126,7 @@ def moving_query(
         raise damaged(pair.trees, fault) from fault
 
 
-def _screw(body: Body, tree: ObbTree) -> kernels.Screw:
+def screw_of(body: Body, tree: ObbTree) -> kernels.Screw:
     """Return how a body moves, as the kernels see it; a body that has its tree remembers."""
     if body.shape is not tree:
         return _screw_over(body, tree)

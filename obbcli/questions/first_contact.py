@@ -123,18 +123,36 @@ class Query:
         query._set_up(pair, solid=solid, any_contact=any_contact)
         return query
 
-    def _set_up(self, pair: PairQuestion, *, solid: bool, any_contact: bool) -> None:
-        start = time.perf_counter()
+    @classmethod
+    def begun(cls, search: SteadyQuery, pair: PairQuestion) -> Query:
+        """Return the query that goes on with a search of one slice so far.
+
+        Args:
+            search: for the first contact of bodies of constant velocities.
+            pair: what it asks.
+        """
+        query = cls.__new__(cls)
+        query._start(pair, search)
+        query._is_finished = search.is_finished
+        query._spent = max(search.pops, 1)
+        return query
+
+    def _start(self, pair: PairQuestion, search: _Search) -> None:
         self._pair = pair
-        self._search = _search_of(pair, any_contact=any_contact)
+        self._search = search
         self._solids: Containment | None = None
         # The question about t = 0 that solids ask where the search asks none.
         self._at_start: kernels.StaticQuery | None = None
-        if solid:
-            self._solids = self._containment()
-        self._seconds = {"load": pair.load_seconds, "query": time.perf_counter() - start}
+        self._seconds = {"load": pair.load_seconds, "query": 0.0}
         self._is_finished = False
         self._spent = 0
+
+    def _set_up(self, pair: PairQuestion, *, solid: bool, any_contact: bool) -> None:
+        start = time.perf_counter()
+        self._start(pair, _search_of(pair, any_contact=any_contact))
+        if solid:
+            self._solids = self._containment()
+        self._seconds["query"] = time.perf_counter() - start
 
     def _containment(self) -> Containment:
         """Return the question whether a part of one body is inside the other at t = 0."""
@@ -225,7 +243,7 @@ class Query:
             raise damaged(self._pair.trees, fault) from fault
         finally:
             self._seconds["query"] += time.perf_counter() - start
-        return self._answer()
+        return self.answer()
 
     def _step(self, pops: int, until: float) -> bool:
         """Advance the question about solids, then the search; return whether all is answered."""
@@ -236,7 +254,8 @@ class Query:
                 return True
         return self._search.step(pops, until)
 
-    def _answer(self) -> FirstContact:
+    def answer(self) -> FirstContact:
+        """Return what is known now, as `advance`, without going on."""
         solids = self._solids
         is_contained = solids is not None and solids.contained is not None
         found = solids.answer() if solids and is_contained else self._search.contact()

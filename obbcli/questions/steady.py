@@ -43,6 +43,28 @@ class SteadyQuery:
         self.at_start = static_query(pair)
         self.is_finished = False
 
+    @classmethod
+    def begun(
+        cls,
+        pair: PairQuestion,
+        at_start: kernels.StaticQuery,
+        moving: kernels.ContactQuery | None,
+        *,
+        is_finished: bool,
+    ) -> SteadyQuery:
+        """Return the question as the kernels have begun it, for the first contact.
+
+        Args:
+            pair: the question.
+            at_start: the kernels' question about t = 0.
+            moving: that about the motion; None where there is none yet.
+            is_finished: whether the answer is complete.
+        """
+        query = cls.__new__(cls)
+        query._pair, query._any_contact = pair, False
+        query.at_start, query._moving, query.is_finished = at_start, moving, is_finished
+        return query
+
     @property
     def lower_bound(self) -> float:
         """No contact in [0, lower_bound): proven. s."""

@@ -13,23 +13,16 @@ from typing import TYPE_CHECKING
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
-from obbcli.errors import MotionError
 from obbcli.questions.budget import Budget
 from obbcli.questions.describe import unresolved
-from obbcli.questions.first_contact import Query
 from obbcli.scene.contact_stream import ContactStream
 from obbcli.scene.pair_queue import Item, PairQueue
 from obbcli.scene.results import SceneContact, SceneStats
+from obbcli.scene.rounds import Advanced, Round, Rounds
 
 if TYPE_CHECKING:
-    from obbcli.accuracy import Accuracy
-    from obbcli.answers.contact import FirstContact
     from obbcli.scene.pairs import ScenePairs
 
-# Queue pops of a question before another may be turned to: the least for which turning costs
-# little, and about what a question takes.
-_LEAST_POPS = 64
-_POPS = 4096
 _CONTACT_FIELDS = tuple(field.name for field in fields(Contact))
 
 
@@ -42,19 +35,24 @@ class FirstContacts(ContactStream):
     Args:
         asked: bodies and pairs.
         first: whether to end after the earliest contact.
+        threads: how many look at pairs at the same time. Answers do not depend on it, nor does what
+            they cost.
         is_eager: whether to finish a question before turning to another where that costs less.
     """
 
-    def __init__(self, asked: ScenePairs, *, first: bool, is_eager: bool = True) -> None:
+    def __init__(
+        self, asked: ScenePairs, *, first: bool, threads: int = 1, is_eager: bool = True
+    ) -> None:
         super().__init__(asked)
-        self._accuracy: Accuracy = asked.accuracy
         self._agenda = PairQueue(asked.candidates)
         self._is_first = first
-        self._is_eager = is_eager and not first
         self._best = math.inf  # the time of the earliest contact known, s
         self._is_stopped = False
         self._is_over = False
         self._budget = Budget(seconds=asked.accuracy.timeout)
+        self._rounds = Rounds(
+            asked, self._agenda, self._budget, threads=threads, is_eager=is_eager and not first
+        )
         self._counts = Counts()
         self._ends = dict.fromkeys(Status, 0)
 
@@ -95,14 +93,17 @@ class FirstContacts(ContactStream):
         if item is None:
             return None
         if isinstance(item.work, SceneContact):
-            self._agenda.put(None)
+            self._agenda.put([item], [])
             self._is_over = self._is_first and item.work.status is not Status.UNRESOLVED
             return item.work
         if self.is_late():
-            self._close(item, unresolved(item.time))
+            advanced = [Advanced(item, unresolved(item.time))]
+            self._take_in(Round([item], 0, advanced, Counts()))
         else:
             with self.asked.timed("query"):
-                self._go_on(item)
+                # Where only the first contact is asked for, nothing goes beyond one that is known.
+                until = self._best if self._is_first else math.inf
+                self._take_in(self._rounds.next(item, until))
         return None
 
     def is_late(self) -> bool:
@@ -110,62 +111,34 @@ class FirstContacts(ContactStream):
         self._is_stopped = self._is_stopped or self._budget.is_over
         return self._is_stopped
 
-    def _go_on(self, item: Item) -> None:
-        """Advance the question about a pair."""
-        query: Query = item.work
-        try:
-            if query is None:
-                query = Query(
-                    *self.asked.bodies_of(item.a, item.b),
-                    self.asked.duration,
-                    self._accuracy,
-                    # Bodies whose boxes are apart at t = 0 do not hold each other then.
-                    solid=self.asked.solid and item.time == 0.0,
-                )
-            before = query.counts
-            found = self._advance(query)
-        except MotionError as fault:
-            where = f"{' and '.join(self.asked.names(item.a, item.b))}: {fault.where}"
-            raise MotionError(where, fault.fault, fault.remedy) from fault
-        self._counts += query.counts - before
-        if found is None:
-            self._agenda.put(item._replace(time=max(item.time, query.time), work=query))
-        else:
-            self._close(item, found)
+    def _take_in(self, done: Round) -> None:
+        """Put what a round has found into the queue."""
+        ends = [(item, found) for item, found in done.advanced if found is not None]
+        items = [
+            item._replace(time=max(item.time, getattr(item.work, "time", 0.0)))
+            for item, found in done.advanced
+            if found is None
+        ]
+        items += [
+            self._result(item, found) for item, found in ends if found.status != Status.SEPARATED
+        ]
+        self._agenda.put(done.gone, items)
+        self._counts += done.spent
+        self._ends[Status.SEPARATED] += done.apart
+        for _, found in ends:
+            self._ends[found.status] += 1
 
-    def _advance(self, query: Query) -> FirstContact | None:
-        """Advance a question; return its answer once it is known or a limit is reached."""
-        if self._is_eager:
-            return self._answer(query, _POPS, math.inf)
-        # Where only the first contact is asked for, no question goes beyond one that is known.
-        best = self._best if self._is_first else math.inf
-        found = self._answer(query, _LEAST_POPS, best)
-        until = min(best, self._agenda.second_time())
-        if found is None and query.time <= until:
-            found = self._answer(query, _POPS, until)
-        return found
-
-    def _answer(self, query: Query, pops: int, until: float) -> FirstContact | None:
-        left = self._accuracy.max_iterations - query.iterations
-        found = query.advance(min(pops, left), self.seconds_left(), until=until)
-        is_known = query.is_finished or query.iterations >= self._accuracy.max_iterations
-        return found if is_known else None
-
-    def seconds_left(self) -> float | None:
-        """Return how much time may be spent, s; None: no limit."""
-        return self._budget.seconds_left
-
-    def _close(self, item: Item, found: Contact) -> None:
-        """Note the end of a question."""
-        self._ends[found.status] += 1
-        if found.status is Status.SEPARATED:
-            self._agenda.put(None)
-            return
+    def _result(self, item: Item, found: Contact) -> Item:
+        """Return the place in the queue of an answer that is to be told."""
         assert found.time is not None
         contact = Contact(**{name: getattr(found, name) for name in _CONTACT_FIELDS})
         if found.status is not Status.UNRESOLVED:
             self._best = min(self._best, found.time)
         # An unresolved pair is told no earlier than the time that the queue has come to.
         when = max(found.time, item.time) if found.status is Status.UNRESOLVED else found.time
-        result = SceneContact(*self.asked.names(item.a, item.b), contact)
-        self._agenda.put(item._replace(time=when, work=result))
+        told = SceneContact(*self.asked.names(item.a, item.b), contact)
+        return item._replace(time=when, work=told)
+
+    def seconds_left(self) -> float | None:
+        """Return how much time may be spent, s; None: no limit."""
+        return self._budget.seconds_left

@@ -7,11 +7,13 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from obbcli.scene.candidates import Candidates
 
 
 class Item(NamedTuple):
-    """What is known of a pair. No two of one agenda are about the same.
+    """What is known of a pair. No two of one queue are about the same.
 
     Attributes:
         time: s; nothing of it comes before.
@@ -35,50 +37,64 @@ class PairQueue:
 
     def __init__(self, candidates: Candidates) -> None:
         self._candidates = candidates
-        self._taken = 0  # how many candidates have left the list
-        self._new: Item | None = None  # the candidate that left the list last
         self._begun: list[Item] = []
-        self._take()
+        # How many candidates have left the list, and the one that comes next.
+        self._next: tuple[int, Item | None] = (0, self._candidate(0))
 
-    def _take(self) -> None:
-        candidates, k = self._candidates, self._taken
-        self._new = None
-        if k < len(candidates.times):
-            a, b = candidates.pairs[k].tolist()
-            self._new = Item(float(candidates.times[k]), a, b, None)
-            self._taken += 1
+    def _candidate(self, row: int) -> Item | None:
+        if row >= len(self._candidates.times):
+            return None
+        a, b = self._candidates.pairs[row].tolist()
+        return Item(float(self._candidates.times[row]), a, b, None)
 
     def first(self) -> Item | None:
         """Return the earliest; None where nothing is left."""
+        new = self._next[1]
         if not self._begun:
-            return self._new
-        return self._begun[0] if self._new is None else min(self._begun[0], self._new)
+            return new
+        return self._begun[0] if new is None else min(self._begun[0], new)
 
     def second_time(self) -> float:
         """Return when the one after the earliest may come, s; infinite where there is none."""
-        if self.first() is self._new:
-            times = [item.time for item in self._begun[:1]]
-            times += self._candidates.times[self._taken : self._taken + 1].tolist()
-        else:
-            times = [item.time for item in self._begun[1:3]]
-            times += [] if self._new is None else [self._new.time]
-        return min(times, default=math.inf)
+        taken = self._next[0]
+        times = [item.time for item in self._begun[:3]]
+        times += self._candidates.times[taken : taken + 2].tolist()
+        return min(sorted(times)[1:], default=math.inf)
 
-    def put(self, item: Item | None) -> None:
-        """Let something else take the place of the earliest, or nothing.
+    def new(self, count: int) -> list[Item]:
+        """Return up to so many of the pairs that nothing was begun about, earliest first."""
+        taken = self._next[0]
+        times = self._candidates.times[taken : taken + count].tolist()
+        pairs = self._candidates.pairs[taken : taken + count].tolist()
+        return [Item(time, a, b, None) for time, (a, b) in zip(times, pairs, strict=True)]
+
+    def begun(self, count: int) -> list[Item]:
+        """Return up to so many of the pairs that something was begun about, earliest first."""
+        return heapq.nsmallest(count, self._begun)
+
+    def put(self, gone: Sequence[Item], items: Sequence[Item]) -> None:
+        """Let items take the place of others.
 
         In such an order that an interrupt in between loses no pair.
+
+        Args:
+            gone: the earliest of those that nothing was begun about, or any others.
+            items: of the same pairs, something was begun about all of them.
         """
-        is_new = self.first() is self._new
-        if not is_new and item is not None:
-            heapq.heapreplace(self._begun, item)
-        elif not is_new:
-            heapq.heappop(self._begun)
-        elif item is not None:
-            heapq.heappush(self._begun, item)
-        if is_new:
-            self._take()
+        if len(gone) == 1 and self._begun and gone[0] is self._begun[0]:
+            if items:
+                heapq.heapreplace(self._begun, items[0])
+            else:
+                heapq.heappop(self._begun)
+            return
+        old = {(item.a, item.b) for item in gone if item.work is not None}
+        begun = (
+            [each for each in self._begun if (each.a, each.b) not in old] if old else self._begun
+        )
+        begun = [*begun, *items]
+        heapq.heapify(begun)
+        taken = self._next[0] + len(gone) - len(old)
+        self._begun, self._next = begun, (taken, self._candidate(taken))
 
     def __len__(self) -> int:
-        rest = len(self._candidates.times) - self._taken + (self._new is not None)
-        return len(self._begun) + rest
+        return len(self._begun) + len(self._candidates.times) - self._next[0]

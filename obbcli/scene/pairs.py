@@ -6,7 +6,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from obbcli.questions.pair_question import check_units
+from obbcli.questions.pair_question import check_units, time_tolerance
 from obbcli.scene.candidates import Ignored, asked_pairs, find_candidates
 from obbcli.scene.results import SceneContact, SceneStats
 from obbcli.tree.tree import ObbTree
@@ -35,6 +35,7 @@ class ScenePairs:
         shapes: the loaded shape of each body.
         duration: s.
         accuracy: of each answer.
+        time_tolerance: s; the width asked of a bracket.
         candidates: the pairs that may meet.
         solid: as above.
 
@@ -56,6 +57,7 @@ class ScenePairs:
         assert scene.duration is not None
         self.duration = scene.duration
         self.accuracy = scene.accuracy
+        self.time_tolerance = time_tolerance(scene.accuracy, scene.duration)
         self.solid = solid
         self._all = scene.bodies
         self._places_by_name = {body.name: place for place, body in enumerate(scene.bodies)}
@@ -94,16 +96,17 @@ class ScenePairs:
 
         pairs, times = self.candidates.pairs, self.candidates.times
         for place in sorted(set(pairs[times == 0.0].ravel().tolist())):
-            tree = self._body(place).shape
+            tree = self.body(place).shape
             assert isinstance(tree, ObbTree)
             name = f"body {self._all[place].name!r}"
             require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
 
     def bodies_of(self, a: int, b: int) -> tuple[Body, Body]:
         """Return two bodies, given by their places in the scene, on their trees."""
-        return self._body(a), self._body(b)
+        return self.body(a), self.body(b)
 
-    def _body(self, place: int) -> Body:
+    def body(self, place: int) -> Body:
+        """Return a body, given by its place in the scene, on its tree."""
         placed = self._placed.get(place)
         if placed is None:
             placed = self._placed[place] = self._shapes.body(self._all[place].body)

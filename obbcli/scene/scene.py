@@ -16,6 +16,7 @@ from obbcli.scene.bodies import SceneParts, as_bodies, as_ignored
 from obbcli.scene.first_contacts import FirstContacts
 from obbcli.scene.pairs import ScenePairs
 from obbcli.scene.shapes import Shapes
+from obbcli.threads import thread_count
 
 if TYPE_CHECKING:
     import os
@@ -114,6 +115,7 @@ class Scene:
         first: bool = False,
         pairs: Iterable[tuple[str, str]] | None = None,
         solid: bool | None = None,
+        threads: int | None = None,
     ) -> FirstContacts:
         """Return the first contact of every pair that touches, in order of time.
 
@@ -129,11 +131,14 @@ class Scene:
                 `first_contact`. Bodies that may be inside another or hold one have to be
                 watertight; of those whose boxes are apart at t = 0 that is not asked. None: as the
                 scene says.
+            threads: how many look at pairs at the same time, where all contacts are asked for.
+                Answers and their order do not depend on it. None: one a core that may be used.
 
         Returns:
             an iterator of `SceneContact` that also has `stats`.
 
         Raises:
+            ObbError: `threads` is no positive integer.
             SceneError: a pair is none, or names what is not there, or what the scene ignores.
             MeshError: a mesh cannot be read or is refused, as one that is not watertight if
                 `solid`.
@@ -142,7 +147,7 @@ class Scene:
         """
         asks_solids = self.solid if solid is None else solid
         asked = ScenePairs(self._parts, self._shapes, pairs, solid=asks_solids)
-        return FirstContacts(asked, first=first)
+        return FirstContacts(asked, first=first, threads=thread_count(threads))
 
     def contacts(
         self,

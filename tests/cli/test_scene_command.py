@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from scenes.cubes import SCENE, add
 
-import obbcli.scene.first_contacts
 from obbcli import ObbTree
+from obbcli.scene.first_contacts import FirstContacts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from conftest import Ended
+
+    from obbcli.scene.rounds import Round
 
     Run = Callable[..., Ended]
 
@@ -226,15 +228,14 @@ def test_interrupt_prints_what_is_known(
     lists: tuple[str, ...], obbtree: Run, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     add(scene, '[[body]]\nname = "on it"\nmesh = "touching.obj"\n')
-    asks = obbcli.scene.first_contacts.FirstContacts._answer
+    take_in = FirstContacts._take_in
 
-    def interrupted(self: Any, query: Any, *limits: Any) -> Any:
-        answer = asks(self, query, *limits)
-        if self._best < 1 and query.time > 0:
+    def interrupted(self: FirstContacts, done: Round) -> None:
+        if self._best < 1 and any(item.time > 0 for item in done.gone) and not self._is_stopped:
             raise KeyboardInterrupt
-        return answer
+        take_in(self, done)
 
-    monkeypatch.setattr(obbcli.scene.first_contacts.FirstContacts, "_answer", interrupted)
+    monkeypatch.setattr(FirstContacts, "_take_in", interrupted)
 
     ended = obbtree("scene", "cell.toml", "--json", *lists)
 
@@ -244,3 +245,15 @@ def test_interrupt_prints_what_is_known(
     assert {contact["body_a"] for contact in result["contacts"]} == {"still"}
     assert len(result["unresolved"]) == 2
     assert (ended.error["code"], ended.error["remedy"]) == (130, "unresolved pairs: 2")
+
+
+def test_threads_change_nothing_and_go_with_all_contacts_alone(obbtree: Run, scene: Path) -> None:
+    add(scene, '[[body]]\nname = "on it"\nmesh = "touching.obj"\n')
+    found = [obbtree("scene", "cell.toml", "--json", "--threads", n).json for n in "13"]
+
+    assert found[0]["result"] == found[1]["result"]
+    assert found[0]["result"]["contacts"]
+    for other in ("--first", "--all-contacts"):
+        refused = obbtree("scene", "cell.toml", "--threads", "2", other)
+        assert refused.code == 2
+        assert f"one question is asked at a time with {other}" in refused.err

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import pytest
 from scenes.random_scenes import MESHES, asked, one_by_one, plain, random_scene
 
+import obbcli.scene.rounds
 from obbcli import (
     Accuracy,
     Body,
@@ -15,6 +18,7 @@ from obbcli import (
     SceneContact,
     Status,
     contacts,
+    first_contact,
 )
 
 KINDS = {
@@ -158,3 +162,25 @@ def test_contact_of_a_scene_tells_time_and_status() -> None:
 
     assert isinstance(one, SceneContact)
     assert (one.time, one.status) == (one.contact.time, one.contact.status)
+
+
+@pytest.mark.parametrize("kind", ["default", "sampled", "few steps"])
+@pytest.mark.parametrize("pops", [20, 4096])
+def test_threads_change_neither_answers_nor_counts(
+    kind: str, pops: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(obbcli.scene.rounds, "_POPS", pops)
+    scene = random_scene(4, count=14, width=4.0, accuracy=Accuracy(**KINDS[kind]))
+    found = [scene.first_contacts(threads=threads) for threads in (1, 2, 5)]
+
+    contacts = [list(each) for each in found]
+
+    assert contacts[0] == contacts[1] == contacts[2]
+    counts = [each.stats[:-2] for each in found]
+    assert counts[0] == counts[1] == counts[2]
+    alone = [
+        first_contact(a.body, b.body, scene.duration, scene.accuracy).stats.counts
+        for a, b in combinations(scene.bodies, 2)
+    ]
+    # Pairs that bounds tell apart are not asked about.
+    assert 0 < found[0].stats.pops <= sum(each.pops for each in alone)

@@ -11,7 +11,6 @@ from meshes.surfaces import blob
 from scenes.random_scenes import CUBE, MESHES, random_scene
 
 import obbcli.scene.all_contacts
-import obbcli.scene.first_contacts
 import obbcli.scene.shapes
 from obbcli import (
     Accuracy,
@@ -27,7 +26,7 @@ from obbcli import (
     SceneError,
     TreeFileError,
 )
-from obbcli.scene.first_contacts import FirstContacts
+from obbcli.scene.rounds import Rounds
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -170,14 +169,14 @@ def test_no_question_is_refined_beyond_the_contact_that_is_known(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     calls = []
-    ask = FirstContacts._answer
+    ask = Rounds._slice
 
-    def recorded(self: FirstContacts, query: Any, pops: int, until: float) -> Any:
+    def recorded(self: Rounds, query: Any, pops: int, until: float) -> Any:
         answer = ask(self, query, pops, until)
         calls.append((until, answer))
         return answer
 
-    monkeypatch.setattr(FirstContacts, "_answer", recorded)
+    monkeypatch.setattr(Rounds, "_slice", recorded)
     later = 0
     for seed in range(20):
         calls.clear()

@@ -38,6 +38,7 @@ class _Wanted(NamedTuple):
     all_contacts: bool
     limit: int | None
     solid: bool
+    threads: int | None
 
 
 @click.command(
@@ -71,6 +72,13 @@ Examples:
     help="List the first N contacts [default: all].",
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
+@option(
+    QUESTION,
+    "--threads",
+    type=Whole(1),
+    metavar="N",
+    help="Ask about N pairs at a time [default: one a core]; nothing else depends on it.",
+)
 @option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
 @option(
     QUESTION,
@@ -117,6 +125,10 @@ def _refuse_contradictions(wanted: _Wanted) -> None:
             if getattr(wanted, name):
                 fault = "lists contacts, and --first asks for one"
                 raise UsageError(f"--{name.replace('_', '-')}", fault, "leave out one of the two")
+    if wanted.threads is not None and (wanted.first or wanted.all_contacts):
+        other = "--first" if wanted.first else "--all-contacts"
+        fault = f"one question is asked at a time with {other}"
+        raise UsageError("--threads", fault, "leave out one of the two")
     if wanted.solid and wanted.all_contacts:
         fault = "lists triangles that meet, and a body inside another has none"
         raise UsageError("--all-contacts", fault, "leave out it or --solid")
@@ -139,7 +151,7 @@ def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
     try:
         if wanted.all_contacts:
             return scene.contacts(wanted.limit, pairs)
-        return scene.first_contacts(wanted.first, pairs, wanted.solid or None)
+        return scene.first_contacts(wanted.first, pairs, wanted.solid or None, wanted.threads)
     except SceneError as fault:
         # What is typed is usage.
         raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault

@@ -25,6 +25,7 @@ NB_MODULE(_core, m) {
     bind_file_tree(m);
     bind_static_query(m);
     bind_contact_query(m);
+    bind_steady_pairs(m);
     bind_sweep(m);
     bind_containment(m);
     bind_primitives(m);

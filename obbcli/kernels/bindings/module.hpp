@@ -176,6 +176,7 @@ void bind_hull(nb::module_& m);
 void bind_limits(nb::module_& m);
 void bind_primitives(nb::module_& m);
 void bind_static_query(nb::module_& m);
+void bind_steady_pairs(nb::module_& m);
 void bind_swept_pairs(nb::module_& m);
 void bind_sweep(nb::module_& m);
 void bind_tree(nb::module_& m);

@@ -1,7 +1,7 @@
 // Questions about bodies at rest across the border.
+#include "bindings/at_rest.hpp"
 #include "bindings/module.hpp"
 
-#include "at_rest/static_query.hpp"
 #include "work/parallel.hpp"
 
 #include <nanobind/stl/optional.h>
@@ -38,13 +38,6 @@ void init_pose(
 }
 
 obb::StaticQueryOptions options_of(const obb::Limits& limits) { return {.boxes = limits.boxes}; }
-
-// A query, and what keeps its trees alive.
-struct AtRest {
-    nb::object a, b;
-    std::uint64_t brief;
-    obb::StaticQuery query;
-};
 
 void init_query(AtRest* self, const Placed& a, const Placed& b, const obb::Limits& limits) {
     new (self) AtRest{a.owner,

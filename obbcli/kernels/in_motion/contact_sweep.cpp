@@ -1,5 +1,7 @@
 #include "in_motion/contact_sweep.hpp"
 
+#include "in_motion/steady_query.hpp"
+
 #include <algorithm>
 
 namespace obb {
@@ -12,11 +14,6 @@ constexpr std::uint64_t kPopsASlice = 16'384;
 
 [[nodiscard]] std::uint64_t less(std::uint64_t left, std::uint64_t used) {
     return left - std::min(left, std::max<std::uint64_t>(used, 1));
-}
-
-[[nodiscard]] bool is_at_rest(const Screw& screw) {
-    constexpr Vec3 kZero{0, 0, 0};
-    return screw.linear_velocity == kZero && screw.angular_velocity == kZero;
 }
 
 } // namespace
@@ -74,18 +71,6 @@ bool SweepRow::advance() {
     return true;
 }
 
-// Whether neither body moves against the other.
-bool SweepRow::moves_nothing() const {
-    const Screw &a = question_->a, &b = question_->b;
-    if (question_->duration == 0 || (is_at_rest(a) && is_at_rest(b))) {
-        return true;
-    }
-    if (is_at_rest(a) || is_at_rest(b)) {
-        return false;
-    }
-    return a == b;
-}
-
 // Whether the question at t = 0 answers it all.
 bool SweepRow::settle_at_start() {
     const StaticQuery& at_start = start_->query();
@@ -104,7 +89,8 @@ bool SweepRow::settle_at_start() {
         answer_.triangle_b = at_start.pairs()[0].b;
         return true;
     }
-    return moves_nothing() && !(limits_->clearance > 0);
+    const SweepQuestion& q = *question_;
+    return moves_nothing(q.a, q.b, q.duration) && !(limits_->clearance > 0);
 }
 
 ContactQuery SweepRow::moving_query() const {

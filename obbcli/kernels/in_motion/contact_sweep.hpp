@@ -79,7 +79,6 @@ class SweepRow {
     [[nodiscard]] const SweepAnswer& answer() const { return answer_; }
 
   private:
-    [[nodiscard]] bool moves_nothing() const;
     [[nodiscard]] bool settle_at_start();
     [[nodiscard]] ContactQuery moving_query() const;
     [[nodiscard]] bool is_late() const;
