@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 TEMPORARY = ".obbtree-"
 """How names of files begin that are not yet whole; `kill -9` can leave one behind."""
+# Bytes. A mesh of 20,000 triangles, which takes some milliseconds to read.
+_LARGE = 1_000_000
 
 
 def write_whole(path: str | os.PathLike[str], *parts: bytes) -> None:
@@ -112,3 +114,12 @@ def _mode_of(target: Path) -> int | None:
         return target.stat().st_mode
     except FileNotFoundError:
         return None
+
+
+def is_large_file(name: str | os.PathLike[str]) -> bool:
+    """Return whether a regular file is so large that a thread pays for reading it."""
+    try:
+        found = Path(file_of(name)).stat()
+    except (OSError, ValueError):
+        return False
+    return stat.S_ISREG(found.st_mode) and found.st_size >= _LARGE

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.cli.boundary import UsageError
 from obbcli.cli.progress import bar
 from obbcli.errors import MeshError
-from obbcli.files import file_and_pattern, file_of, is_device, stamp_of
+from obbcli.files import file_and_pattern, file_of, is_device, is_large_file, stamp_of
 from obbcli.report.record import Source, file_sha256
+from obbcli.threads import both
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -107,19 +109,34 @@ def read_pair(
 ) -> tuple[Input, Input]:
     """Return A and B as `read` does; one of them may be standard input.
 
+    Two large files are read at the same time, and their root boxes made, which any question needs.
+
     Raises:
         UsageError: both are.
     """
     if a == b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    first = read(a, lengths[0], verify=verify, hashed=hashed, progress=progress)
     if a == b and lengths[0] == lengths[1]:
+        first = read(a, lengths[0], verify=verify, hashed=hashed, progress=progress)
         return first, first
-    return first, read(b, lengths[1], verify=verify, hashed=hashed, progress=progress)
+    at_once = is_large_file(a) and is_large_file(b)
+    one = partial(read, verify=verify, hashed=hashed, roots=at_once)
+    # No more than one bar is drawn at a time.
+    return both(
+        partial(one, a, lengths[0], progress=progress),
+        partial(one, b, lengths[1], progress=progress and not at_once),
+        at_once=at_once,
+    )
 
 
 def read(
-    name: str, lengths: Lengths | None = None, *, verify: bool, hashed: bool, progress: bool
+    name: str,
+    lengths: Lengths | None = None,
+    *,
+    verify: bool,
+    hashed: bool,
+    progress: bool,
+    roots: bool = False,
 ) -> Input:
     """Return a mesh or tree file with its tree, which is built over a mesh.
 
@@ -129,6 +146,7 @@ def read(
         verify: whether a tree file's checksums are compared.
         hashed: whether the SHA-256 of what is read will be asked for.
         progress: whether a bar may be drawn.
+        roots: whether the root box of a tree that is built is made at once.
 
     Raises:
         MeshError: the mesh cannot be read or is refused.
@@ -145,6 +163,7 @@ def read(
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
             shape = ObbTree.build(shape, progress=move)
+        shape = shape.with_root() if roots else shape
     return Input(name, shape, sha256, time.perf_counter() - start, stamp)
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import os
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from obbcli.accuracy import Accuracy
 from obbcli.errors import MeshError, MotionError
+from obbcli.files import is_large_file
 from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, as_body, pivot_of
+from obbcli.threads import both
 from obbcli.tree.tree import ObbTree, load_tree
 
 if TYPE_CHECKING:
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
 
 # Of the duration: the width asked of a bracket where the caller asks for none.
 _TIME_TOLERANCE = 1e-9
+# Triangles. The root box of so many takes some milliseconds.
+_LARGE = 50_000
 _EXACT = Accuracy()
 
 _Answer = TypeVar("_Answer", "Collision", "Contact", "FirstContact", "Distance")
@@ -162,6 +167,8 @@ def check_pair_units(trees: Trees) -> None:
 def trees_of(bodies: tuple[Body, Body]) -> Trees:
     """Return the trees of two bodies, one for both where they share a shape.
 
+    Two large shapes are read at the same time, and their root boxes made, which any question needs.
+
     Raises:
         MeshError: a mesh cannot be read or is refused, or the two state different units.
         TreeFileError: a tree file is damaged.
@@ -171,15 +178,29 @@ def trees_of(bodies: tuple[Body, Body]) -> Trees:
     if isinstance(a, ObbTree) and isinstance(b, ObbTree):
         trees = a, b
     else:
-        tree = _tree(a)
-        trees = tree, tree if b is a else _tree(b)
+        if b is a:
+            tree = _tree(a)
+            trees = tree, tree
+        else:
+            at_once = _is_large(a) and _is_large(b)
+            trees = both(partial(_tree, a, at_once), partial(_tree, b, at_once), at_once=at_once)
     check_pair_units(trees)
     return trees
 
 
-def _tree(shape: Shape) -> ObbTree:
+def _tree(shape: Shape, has_root: bool = False) -> ObbTree:
     found = surface_of(shape)
-    return ObbTree.build(found) if isinstance(found, Mesh) else found
+    if not isinstance(found, Mesh):
+        return found
+    tree = ObbTree.build(found)
+    return tree.with_root() if has_root else tree
+
+
+def _is_large(shape: Shape) -> bool:
+    """Return whether a thread pays for reading a shape and beginning its tree."""
+    if isinstance(shape, Mesh):
+        return len(shape.triangles) >= _LARGE
+    return isinstance(shape, (str, os.PathLike)) and is_large_file(shape)
 
 
 def surface_of(shape: Shape) -> Mesh | ObbTree:

@@ -85,6 +85,11 @@ class ObbTree(TreeFacts):
         growth = Growth(mesh, options, max_memory, on_demand=lazy)
         return cls(growth if lazy else WholeTree(growth.arrays(progress)))
 
+    def with_root(self) -> ObbTree:
+        """Return this tree over a mesh, its root box made: no question can do without it."""
+        self.kernel.boxes_of_level(0)
+        return self
+
     @classmethod
     def open(cls, path: str | os.PathLike[str], verify: bool = True) -> ObbTree:
         """Return the tree in a file, of which questions read what they reach.
