@@ -44,11 +44,10 @@ def file_and_pattern(name: str) -> tuple[str, str | None]:
     """Return the file in `FILE#PATTERN`, and the pattern; a file whose own name holds `#` wins."""
     cut = len(name) if "#" in name else 0
     while cut > 0:
-        try:
+        # A pattern may be too long for the name of a file; of one that stays so its reader says it.
+        with suppress(OSError, ValueError):
             if Path(name[:cut]).exists():
                 return name[:cut], None if cut == len(name) else name[cut + 1 :]
-        except (OSError, ValueError):
-            break  # too long for a name, or with a NUL in it: its reader says so
         cut = name.rfind("#", 0, cut)
     return name, None
 

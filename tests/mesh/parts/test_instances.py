@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -66,6 +67,29 @@ def test_turned_instance_is_where_the_definition_puts_it(tmp_path, degrees):
         x, y, z = before + np.array([1 - 5, 2, 3 + 1])
         expected = [cosine * x + sine * z + 5, y, cosine * z - sine * x - 1]
         np.testing.assert_allclose(after, expected, rtol=0, atol=5e-15)
+    require_whole(path)
+
+
+@pytest.mark.parametrize("degrees", [360.0 * 2**50, 1e16, 7.2e17, 1e300])
+def test_angles_of_many_turns_are_turns(tmp_path, degrees):
+    path = deck(tmp_path, PART + instance("a", "Tet", "0, 0, 0", f"0, 0, 0, 0, 0, 1, {degrees!r}"))
+
+    (part,) = load_parts(path)
+
+    # By whole numbers, without rounding.
+    angle = math.radians(int(degrees) % 360)
+    expected = [[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0]]
+    np.testing.assert_allclose(part.pose.rotation[:2], expected, rtol=0, atol=1e-15)
+    require_whole(path)
+
+
+def test_instances_with_sets_of_their_own_share_the_mesh(tmp_path):
+    sets = "*NSET, NSET=top\n1, 2\n*ELSET, ELSET=all\n1\n"
+    path = deck(tmp_path, PART + instance("a", "Tet", more=sets) + instance("b", "Tet", "1, 2, 3"))
+
+    a, b = load_parts(path)
+
+    assert a.mesh is b.mesh
     require_whole(path)
 
 
@@ -214,9 +238,16 @@ def test_zones_of_tecplot_without_surface_and_at_later_times_are_no_parts(tmp_pa
 
 def test_blocks_without_surface_are_no_parts(tmp_path):
     path = WRITERS["VTK"](tmp_path, [("line", (0, 0, 0)), ("a", (1, 0, 0))])
-    line = (tmp_path / "0.vtu").read_text()
-    types = " ".join(["5"] * 12)
-    (tmp_path / "0.vtu").write_text(line.replace(f">{types}<", f">{types.replace('5', '2')}<"))
+    text = (tmp_path / "0.vtu").read_text()
+    # Twelve lines in place of twelve triangles.
+    for name, numbers in (
+        ("connectivity", [k % 8 for k in range(24)]),
+        ("offsets", range(2, 26, 2)),
+        ("types", [3] * 12),
+    ):
+        row = " ".join(map(str, numbers))
+        text = re.sub(rf'(Name="{name}"[^>]*>)[^<]*', rf"\g<1>{row}", text)
+    (tmp_path / "0.vtu").write_text(text)
 
     assert described(path) == [("a", 12)]
     assert corners(load_mesh(path)).tobytes() == corners(load_mesh(f"{path}#a")).tobytes()

@@ -84,6 +84,16 @@ def test_file_whose_own_name_holds_the_sign_wins(tmp_path):
         load_mesh(tmp_path / "b#2.obj")
 
 
+@pytest.mark.parametrize("sign", ["xy", "x#"])
+def test_pattern_may_be_longer_than_names_of_files(tmp_path, sign):
+    path = written(tmp_path, "a.obj", TRIANGLE + b"o y\nf 1 2 3\no " + sign.encode() * 2500)
+    path.write_bytes(path.read_bytes() + b"\nf 3 2 1\n")
+
+    assert load_mesh(f"{path}#{sign * 2500}").triangles.tolist() == [[2, 1, 0]]
+    with pytest.raises(MeshError, match="matches none of 2 parts"):
+        load_mesh(f"{path}#{sign * 2499}")
+
+
 def test_files_of_too_many_parts_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("obbcli.mesh.parts.selection.MOST_PARTS", 2)
     path = written(tmp_path, "a.obj", TRIANGLE + b"".join(b"o %d\nf 1 2 3\n" % k for k in range(3)))

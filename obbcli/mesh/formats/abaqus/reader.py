@@ -38,8 +38,8 @@ def read_abaqus(source: Source) -> MeshArrays:
     cells = {key: body.cells(source) for key, body in shapes.items()}
     if not any(part.blocks for part in cells.values()):
         raise _without_surface(source, model)
-    if all(body.matrix is None for body in bodies):
-        return joined_surface(source, [cells[body.key] for body in bodies])
+    if len(shapes) == len(bodies) and all(body.matrix is None for body in bodies):
+        return joined_surface(source, list(cells.values()))
     found = dict(zip(cells, surfaces(source, list(cells.values())), strict=True))
     return joined((placed(found[body.key], body.matrix) for body in bodies), source, "instances")
 

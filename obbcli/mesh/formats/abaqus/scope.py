@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 #: A line of nodes with at least so many numbers goes on in the next one without a comma, too:
 #: CalculiX wants none.
 _LONG_LINE = 8
+#: What defines no nodes and no elements.
+_WITHOUT_MESH = frozenset(("NSET", "ELSET", "SYSTEM"))
 #: A node has a number, three coordinates and three components of a normal.
 _NODE_FIELDS = 7
 
@@ -71,13 +73,13 @@ class Scope:
         self._kept: list[tuple[Callable[[Scope, Section], None], Section]] = []
         #: Whether elements were given that may have faces.
         self.has_surface = False
-        #: Whether nothing was given.
+        #: Whether no nodes and elements were given: sets alone change no surface.
         self.is_empty = True
 
     def keep(self, reader: Callable[[Scope, Section], None], section: Section) -> None:
         """Keep a keyword and what reads it until the scope is read."""
         self._kept.append((reader, section))
-        self.is_empty = False
+        self.is_empty &= section.keyword in _WITHOUT_MESH
         if section.keyword == "ELEMENT" and section.data.strip():
             shape = shape_of(section.label("TYPE"))
             self.has_surface |= shape is None or shape.cell is not None

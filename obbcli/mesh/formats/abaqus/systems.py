@@ -38,11 +38,13 @@ def from_cylindrical(places: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _cosine(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
-    return _sine(degrees + 90.0)
+    # Whole turns are taken off first, which is exact: of a large angle 90 would be lost.
+    return _sine(np.fmod(degrees, 360.0) + 90.0)
 
 
 def _sine(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return sines of degrees, exact at multiples of 90."""
+    degrees = np.fmod(degrees, 360.0)
     quarters = np.round(degrees / 90.0)
     rest = np.radians(degrees - 90.0 * quarters)
     odd = quarters % 2 == 1
