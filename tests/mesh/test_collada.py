@@ -252,3 +252,9 @@ def test_text_in_utf_16_is_read():
     data = document(asset=ASSET).decode().replace("utf-8", "utf-16").encode("utf-16")
 
     assert load_mesh_bytes(data, ".dae").vertices.tolist() == [*SQUARE, TOP]
+
+
+def test_an_id_that_two_elements_have_is_no_fault_where_nothing_links_to_it():
+    cameras = '<library_cameras><camera id="c"/><camera id="c"/></library_cameras>'
+
+    assert len(load(more=cameras).triangles) == len(load().triangles) > 0

@@ -43,8 +43,7 @@ class Document:
         world: (4, 4), from the document's coordinates to those of the mesh; None: the identity.
 
     Raises:
-        MeshError: no whole XML, no COLLADA, another version, two elements of one id, a unit or
-            axis that is not known.
+        MeshError: no whole XML, no COLLADA, another version, a unit or axis that is not known.
     """
 
     def __init__(self, source: Source) -> None:
@@ -58,15 +57,20 @@ class Document:
             fault = f"is COLLADA {shown(version.encode())}, only 1.4 and 1.5 are read"
             raise self.values.error(self.root, fault, "convert it to COLLADA 1.4")
         self._by_id: dict[str, Element] = {}
+        # Cameras and lights of real files often share one, to which nothing links that is read.
+        self._shared: dict[str, Element] = {}
         for element in self.root.below():
             key = element.get("id")
             if key and self._by_id.setdefault(key, element) is not element:
-                raise self.values.error(element, f"two elements have the id '{_name(key)}'")
+                self._shared[key] = element
         self.world = self._world()
 
     def linked(self, element: Element, attribute: str, *names: str) -> Element:
         """Return the element that an attribute links to, which must have one of some names."""
         key = self.values.link(element, attribute)
+        if key in self._shared:
+            fault = f"two elements have the id '{_name(key)}'"
+            raise self.values.error(self._shared[key], fault)
         found = self._by_id.get(key)
         if found is None or found.name not in names:
             is_what = "is not there" if found is None else f"is a <{found.name}>"
