@@ -33,7 +33,8 @@ def closing_distance(mesh: Mesh) -> float | None:
     limit = _LARGEST_GAP * mesh.size
     corners = mesh.corner_ids.reshape(-1)
     ids, places = np.unique(corners, return_index=True)
-    is_open = np.isin(ids, open_positions(mesh.corner_ids))
+    is_open = np.zeros(len(ids), dtype=bool)
+    is_open[np.searchsorted(ids, open_positions(mesh.corner_ids))] = True
     points = mesh.vertices[mesh.triangles.reshape(-1)[places[is_open]]]
     if len(points) == 0 or not 0 < limit < np.inf:
         return None
