@@ -157,11 +157,9 @@ void ContactQuery::visit(const Entry& entry) {
         return;
     } else {
         probe(entry);
-        if (may_tie(entry)) {
-            look_for_tie(entry);
-        } else {
-            part(entry);
-        }
+        looked_at_ = entry;
+        take_tie(ties_.may_tie(entry.refs(), counts_.pops) ? ties_.look(pair_, entry.refs())
+                                                           : TiePlanes::Verdict::kUnknown);
     }
 }
 

@@ -66,10 +66,12 @@ bool ContactQuery::advance(std::uint64_t max_pops, double until) {
     const double last = pair_.scaled_time(until);
     SliceClock clock;
     while (max_pops > 0 && !clock.is_over()) {
-        if (wait_) {
-            if (!end_wait(clock)) {
+        if (ties_.is_looking()) {
+            const TiePlanes::Verdict verdict = ties_.look_on(pair_, clock);
+            if (verdict == TiePlanes::Verdict::kLooking) {
                 break;
             }
+            take_tie(verdict);
             continue;
         }
         if (has_ended() || is_ready() || lower_bound_ > last) {
@@ -85,7 +87,7 @@ bool ContactQuery::advance(std::uint64_t max_pops, double until) {
 
 // Whether what is known already answers the question.
 bool ContactQuery::has_ended() {
-    if (is_finished_ || wait_) {
+    if (is_finished_ || ties_.is_looking()) {
         return is_finished_;
     }
     const double next = queue_.next_time();

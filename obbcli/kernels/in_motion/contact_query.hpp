@@ -5,14 +5,12 @@
 
 #include "descent/bound_queue.hpp"
 #include "descent/limits.hpp"
-#include "descent/recent_vertices.hpp"
-#include "descent/tie_search.hpp"
 #include "in_motion/contact.hpp"
 #include "in_motion/contact_list.hpp"
 #include "in_motion/contact_place.hpp"
-#include "in_motion/contact_plane.hpp"
 #include "in_motion/moving_pair.hpp"
 #include "in_motion/nearness.hpp"
+#include "in_motion/tie_planes.hpp"
 #include "in_motion/windows.hpp"
 #include "work/slice.hpp"
 
@@ -78,21 +76,6 @@ class ContactQuery {
         [[nodiscard]] PairRef refs() const { return {a, b}; }
     };
 
-    // A plane that parts what touches at the time of the earliest contact so far, and, in the
-    // query's units from the bodies' pivots, up to where A reaches along it and from where on B.
-    struct Tie {
-        ContactPlane plane;
-        Vec3 normal;
-        double top_of_a, bottom_of_b;
-    };
-    // Nodes whose vertices are being compared with a plane, and the triangles that come next.
-    struct Wait {
-        TieWait<Entry> nodes;
-        std::size_t plane;
-        std::uint32_t next_a, next_b;
-        std::array<RecentVertices, 2> seen;
-    };
-
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
                                std::uint32_t max_depth) const;
     [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
@@ -100,15 +83,10 @@ class ContactQuery {
     void visit(const Entry& entry);
     void part(const Entry& entry);
     void set_planes(const Entry& entry, const Touch& touch);
-    [[nodiscard]] static double top_of(const Triangle& t, Vec3 direction);
-    [[nodiscard]] bool may_tie(const Entry& entry) const;
-    [[nodiscard]] bool are_sides(const Entry& entry, const Tie& tie) const;
-    void look_for_tie(const Entry& entry);
-    [[nodiscard]] bool waits_for(const Entry& candidate, const Entry& entry, std::size_t plane);
+    void take_tie(TiePlanes::Verdict verdict);
     [[nodiscard]] bool has_limits() const;
     void probe(const Entry& entry);
     [[nodiscard]] Entry nearer_half(const Entry& entry, bool opens_a);
-    [[nodiscard]] bool end_wait(SliceClock& clock);
     template <bool kOpensA>
     void open(Entry entry);
     [[nodiscard]] double window(const Entry& entry) const;
@@ -141,11 +119,9 @@ class ContactQuery {
     Windows windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;
-    std::vector<Tie> planes_; // of that
+    TiePlanes ties_; // of that
+    std::optional<Entry> looked_at_; // the pair that a tie is looked for
     std::uint64_t next_probe_ = 0;
-    std::uint64_t tie_pops_ = 0;
-    TieCrowd crowd_;
-    std::optional<Wait> wait_;
     StalledPairs stalled_{0};
     std::uint64_t exact_pops_ = 0; // when `exact_` was found
     ContactList found_;            // with `each_pair`

@@ -1,0 +1,150 @@
+#include "in_motion/tie_planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obb {
+
+namespace {
+
+constexpr std::uint64_t kTiePatience = 64;
+// By how much boxes may reach beyond a plane that what they hold does not cross, of the size of
+// their extents and of their distance from the pivot: they were turned as well, and the plane's
+// normal is rounded.
+constexpr double kReachesBeyond = 8 * kBoxRounding;
+
+double top_of(const Triangle& t, Vec3 direction) {
+    return std::max({dot(t[0], direction), dot(t[1], direction), dot(t[2], direction)});
+}
+
+bool are_same(const NodeRef& x, const NodeRef& y) { return x.begin == y.begin && x.end == y.end; }
+
+} // namespace
+
+// Of bodies that come within a clearance, the plane's two sides are that far apart then, and
+// further before: what holds of contact holds of nearness.
+void TiePlanes::set(const MovingPair& pair, const PairRef& refs, const Touch& touch,
+                    std::uint64_t pops) {
+    planes_.clear();
+    const LinearMotion motion = pair.linear_motion();
+    const Triangle a = pair.a().posed_triangle(refs.a), b = pair.b().posed_triangle(refs.b);
+    for (const auto& plane : {ContactPlane::of_axis(a, b, motion, touch),
+                              ContactPlane::of_motion(a, b, motion, touch)}) {
+        if (plane) {
+            const Vec3 n = plane->normal();
+            planes_.push_back({*plane, n, top_of(pair.a().triangle(refs.a), n),
+                               -top_of(pair.b().triangle(refs.b), -n)});
+        }
+    }
+    crowd_ = {};
+    patience_ = pops + kTiePatience;
+}
+
+bool TiePlanes::may_tie(const PairRef& refs, std::uint64_t pops) const {
+    if (planes_.empty() || pops < patience_) {
+        return false;
+    }
+    return crowd_.may_look_at(refs.a.triangle_count() + refs.b.triangle_count());
+}
+
+// Whether both boxes are on their own sides of the plane, up to their rounding.
+bool TiePlanes::are_sides(const MovingPair& pair, const PairRef& refs, const Tie& tie) {
+    const auto reaches = [](const MovingTree& body, const NodeRef& ref, Vec3 n, double top) {
+        const Obb box = body.box(ref);
+        double height = dot(box.center, n);
+        for (std::size_t k = 0; k < 3; ++k) {
+            height += box.half_extents[k] * std::fabs(dot(box.axes[k], n));
+        }
+        return height <= top + kReachesBeyond * (norm_1(box.half_extents) + norm_1(box.center));
+    };
+    return reaches(pair.a(), refs.a, tie.normal, tie.top_of_a) &&
+           reaches(pair.b(), refs.b, -tie.normal, -tie.bottom_of_b);
+}
+
+bool TiePlanes::waits_for(const MovingPair& pair, const PairRef& candidate, const PairRef& refs,
+                          std::size_t plane) {
+    for (; plane < planes_.size(); ++plane) {
+        if (are_sides(pair, candidate, planes_[plane])) {
+            wait_ = Wait{{candidate, refs}, plane, candidate.a.begin, candidate.b.begin, {}};
+            wait_->nodes.begin(pair.a().tree(), pair.b().tree());
+            return true;
+        }
+    }
+    return false;
+}
+
+TiePlanes::Verdict TiePlanes::look(const MovingPair& pair, const PairRef& refs) {
+    if (crowd_.starts_with_all()) {
+        const PairRef all{pair.a().tree().root(), pair.b().tree().root()};
+        if (waits_for(pair, all, refs, 0)) {
+            return Verdict::kLooking;
+        }
+    }
+    return waits_for(pair, refs, refs, 0) ? Verdict::kLooking : Verdict::kUnknown;
+}
+
+// Whether all vertices under the nodes that are looked at are on their sides of the plane; nothing
+// where the slice is over before that is known.
+std::optional<bool> TiePlanes::compare(const MovingPair& pair, SliceClock& clock) {
+    Wait& wait = *wait_;
+    if (!wait.nodes.advance(clock)) {
+        return std::nullopt;
+    }
+    const ContactPlane& plane = planes_[wait.plane].plane;
+    const auto all_hold = [&](const MovingTree& body, std::uint32_t& next, std::uint32_t end,
+                              RecentVertices& seen, const auto& holds) -> std::optional<bool> {
+        for (; next < end; ++next) {
+            if (clock.is_over()) {
+                return std::nullopt;
+            }
+            const Triangle t = body.posed_triangle({next, next + 1, 0, 0});
+            const Corners& corners = body.tree().corners[next];
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (!seen.add(corners[k]) && !holds(t[k])) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    };
+    const PairRef& refs = wait.nodes.candidate;
+    const std::optional<bool> a = all_hold(pair.a(), wait.next_a, refs.a.end, wait.seen[0],
+                                           [&](const Vec3& p) { return plane.holds_a(p); });
+    if (a != true) {
+        return a;
+    }
+    return all_hold(pair.b(), wait.next_b, refs.b.end, wait.seen[1],
+                    [&](const Vec3& p) { return plane.holds_b(p); });
+}
+
+TiePlanes::Verdict TiePlanes::look_on(const MovingPair& pair, SliceClock& clock) {
+    while (const std::optional<bool> holds = compare(pair, clock)) {
+        const PairRef candidate = wait_->nodes.candidate, refs = wait_->nodes.pair;
+        const std::size_t next = wait_->plane + 1;
+        wait_.reset();
+        const bool is_pair = are_same(candidate.a, refs.a) && are_same(candidate.b, refs.b);
+        if (*holds) {
+            return is_pair ? Verdict::kPairIsLater : Verdict::kAllIsLater;
+        }
+        crowd_.fail(candidate.a.triangle_count() + candidate.b.triangle_count());
+        if (!waits_for(pair, candidate, refs, next) &&
+            (is_pair || !waits_for(pair, refs, refs, 0))) {
+            return Verdict::kUnknown;
+        }
+    }
+    return Verdict::kLooking;
+}
+
+bool TiePlanes::are_later(const MovingPair& pair, const PairRef& refs) const {
+    if (planes_.empty()) {
+        return false;
+    }
+    const Triangle a = pair.a().posed_triangle(refs.a), b = pair.b().posed_triangle(refs.b);
+    return std::any_of(planes_.begin(), planes_.end(), [&](const Tie& tie) {
+        const auto on_a = [&](const Vec3& p) { return tie.plane.holds_a(p); };
+        const auto on_b = [&](const Vec3& p) { return tie.plane.holds_b(p); };
+        return std::all_of(a.begin(), a.end(), on_a) && std::all_of(b.begin(), b.end(), on_b);
+    });
+}
+
+} // namespace obb
