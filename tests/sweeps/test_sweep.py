@@ -136,7 +136,8 @@ def test_limits_in_the_middle_of_slices_end_at_the_same_pop(sheets, limit):
     for row, motion in zip(rows, motions, strict=True):
         body = Body(above.shape, above.pose, motion_of(motion))
         answer = first_contact(plain, body, accuracy=accuracy)
-        assert answer.status == "unresolved"
+        # The one that goes straight takes fewer pops than the largest limits.
+        assert answer.status == "unresolved" or (not motion[3:].any() and limit > 30_000)
         assert_is(row, answer)
 
 

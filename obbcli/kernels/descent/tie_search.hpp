@@ -32,6 +32,7 @@ class TieCrowd {
     }
     // After a look at so many triangles that found no tie.
     void fail(std::uint32_t count) { most_ = count / kFewer; }
+    [[nodiscard]] bool has_failed() const { return most_ < kAnyNumber - 1; }
 
   private:
     static constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();

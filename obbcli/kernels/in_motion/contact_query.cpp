@@ -30,7 +30,33 @@ ContactQuery::ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& s
         give_up(0);
         return;
     }
+    if (is_ray_cast()) {
+        cast_.emplace(pair_, RayCastOptions{options.any_contact, options.each_pair});
+        return;
+    }
     push({0, pair_.duration(), a.root(), b.root()});
+}
+
+// Which of two ways a question goes. A ray cast, where neither body turns: three to four times as
+// fast for a first contact, two to six for the first of a list, and up to a thousand times for any
+// contact at all, which is where it gets to first. Advancement, where
+// - something turns;
+// - a clearance is kept: pairs of triangles that come near have to be advanced anyway, and the ends
+//   of brackets are those of their steps;
+// - boxes stand for triangles: what is answered then is when their faces no longer part them;
+// - positions are out of the range of the cast.
+bool ContactQuery::is_ray_cast() const {
+    return RayCast::suits(pair_) && !(pair_.clearance() > 0) && !has_limits();
+}
+
+bool ContactQuery::advance_cast(std::uint64_t max_pops, double until) {
+    const bool is_over = cast_->advance(pair_, max_pops, until);
+    counts_ = cast_->counts();
+    lower_bound_ = cast_->lower_bound();
+    if (is_over && !is_finished_) {
+        finish(cast_->contact());
+    }
+    return is_over;
 }
 
 bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
@@ -64,6 +90,9 @@ void ContactQuery::push(const Entry& entry) {
 
 bool ContactQuery::advance(std::uint64_t max_pops, double until) {
     const double last = pair_.scaled_time(until);
+    if (cast_) {
+        return advance_cast(max_pops, last);
+    }
     SliceClock clock;
     while (max_pops > 0 && !clock.is_over()) {
         if (ties_.is_looking()) {
@@ -152,6 +181,10 @@ void ContactQuery::name_triangles(Contact& contact) const {
 bool ContactQuery::is_ready() const { return found_.next_low() < queue_.next_time(); }
 
 std::optional<Contact> ContactQuery::take() {
+    if (cast_) {
+        const std::optional<Contact> next = cast_->take();
+        return next ? std::optional(in_seconds(*next)) : std::nullopt;
+    }
     if (!is_ready()) {
         return std::nullopt;
     }

@@ -1,6 +1,6 @@
 // When do two moving trees first touch? Best-first advancement on separating axes: every pair in
 // the queue carries a time before which it is proven apart, so the smallest is a bound for the
-// bodies.
+// bodies. Where neither turns, a ray cast takes its place.
 #pragma once
 
 #include "descent/bound_queue.hpp"
@@ -10,6 +10,7 @@
 #include "in_motion/contact_place.hpp"
 #include "in_motion/moving_pair.hpp"
 #include "in_motion/nearness.hpp"
+#include "in_motion/ray_cast.hpp"
 #include "in_motion/tie_planes.hpp"
 #include "in_motion/windows.hpp"
 #include "work/slice.hpp"
@@ -76,6 +77,8 @@ class ContactQuery {
         [[nodiscard]] PairRef refs() const { return {a, b}; }
     };
 
+    [[nodiscard]] bool is_ray_cast() const;
+    bool advance_cast(std::uint64_t max_pops, double until);
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
                                std::uint32_t max_depth) const;
     [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
@@ -115,11 +118,12 @@ class ContactQuery {
     MovingPair pair_;
     ContactQueryOptions options_;
     double time_tolerance_, distance_tolerance_; // scaled
+    std::optional<RayCast> cast_;                // which answers in place of what follows
     BoundQueue<Entry> queue_;
     Windows windows_;
     std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;
-    TiePlanes ties_; // of that
+    TiePlanes ties_;                 // of that
     std::optional<Entry> looked_at_; // the pair that a tie is looked for
     std::uint64_t next_probe_ = 0;
     StalledPairs stalled_{0};

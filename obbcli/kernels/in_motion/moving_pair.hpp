@@ -55,6 +55,8 @@ class MovingPair {
     // What the motion is where neither turns, in mesh units and s.
     [[nodiscard]] LinearMotion linear_motion() const;
 
+    // Mesh units times 2^-length_exponent() are scaled.
+    [[nodiscard]] int length_exponent() const { return length_exponent_; }
     [[nodiscard]] double scaled_time(double seconds) const;
     [[nodiscard]] double seconds(double scaled_time) const;
     [[nodiscard]] double scaled_length(double length) const;

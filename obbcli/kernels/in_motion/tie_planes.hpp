@@ -27,6 +27,8 @@ class TiePlanes {
     // get that far.
     void set(const MovingPair& pair, const PairRef& refs, const Touch& touch, std::uint64_t pops);
     void clear() { planes_.clear(); }
+    // Whether there are planes that have not yet been looked at in vain.
+    [[nodiscard]] bool are_promising() const { return !planes_.empty() && !crowd_.has_failed(); }
 
     // Whether a look at a pair of nodes is due.
     [[nodiscard]] bool may_tie(const PairRef& refs, std::uint64_t pops) const;
