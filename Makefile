@@ -108,7 +108,7 @@ docs: .venv/installed .venv/check-tools
 	@echo 'See .build/docs/obbtree.html'
 
 STUB := $(KERNELS)/_core.pyi
-WRITE_STUB := $(BIN)/python -m nanobind.stubgen --quiet -m obbcli.kernels._core -o
+WRITE_STUB := $(BIN)/python -m nanobind.stubgen --quiet -p .docs/stub_patterns.txt -m obbcli.kernels._core -o
 
 stub-check: .venv/installed
 	$(WRITE_STUB) .build/_core.pyi

@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
+from obbcli import kernels
 from obbcli.answers.counts import QueryStats
 from obbcli.answers.status import Status, is_contact
 
 if TYPE_CHECKING:
     from obbcli.answers.status import Inner
 
-    _Counts = tuple[int, int, int, int, int, int, int, int]
-    # What `Collision.at_rest` takes.
-    Found = tuple[bool, bool, float, tuple[int, int] | None, float, _Counts]
 
-# Looking them up in the enumeration takes as long as a test of two boxes.
-_SEPARATED, _OVERLAP_AT_START = Status.SEPARATED, Status.OVERLAP_AT_START
-_UNRESOLVED = Status.UNRESOLVED
-_new = object.__new__
-
-
+@kernels.made_by_kernels
 @dataclass(frozen=True, init=False)
-class Collision:
+class Collision(kernels.AtRestAnswer):
     """Whether two bodies touch at any time asked about.
 
     Attributes:
@@ -62,63 +54,17 @@ class Collision:
         part_a: str | None = None,
         part_b: str | None = None,
     ) -> None:
-        # The fields are set past the frozen dataclass, whose own way takes longer than a question.
-        fields = vars(self)
-        fields["status"] = status
-        fields["witness"] = witness
-        fields["approximate"] = approximate
-        fields["error_bound"] = error_bound
-        fields["stats"] = stats
-        fields["contained"] = contained
-        fields["part_a"] = part_a
-        fields["part_b"] = part_b
-
-    @classmethod
-    def at_rest(cls, found: Found, load: float = 0.0) -> Collision:
-        """Return what the kernels found of bodies at rest.
-
-        Args:
-            found: whether the question was answered, whether boxes met, how far apart these hold
-                what they stand for, the witness, s of wall time, and the numbers of `QueryStats`.
-            load: s of wall time that the trees took before.
-        """
-        is_complete, by_boxes, error_bound, witness, seconds, counts = found
-        status = _SEPARATED
-        if by_boxes or witness is not None:
-            status = _OVERLAP_AT_START
-        elif not is_complete:
-            status = _UNRESOLVED
-        made: Collision = _new(cls)
-        fields = made.__dict__
-        fields["status"] = status
-        fields["witness"] = witness
-        fields["approximate"] = by_boxes
-        fields["error_bound"] = error_bound
-        fields["contained"] = None
-        fields["_cost"] = counts, load, seconds
-        return made
-
-    def _stats(self) -> QueryStats:
-        cost: tuple[_Counts, float, float] = vars(self)["_cost"]
-        counts, load, seconds = cost
-        return QueryStats(*counts, {"load": load, "query": seconds})
-
-    @property
-    def collides(self) -> bool:
-        """Return whether the bodies touch.
-
-        Raises:
-            UnresolvedError: a limit was reached before the answer was known.
-        """
-        # The common statuses are compared in place: a call takes as long as a test of two boxes.
-        status = self.status
-        if status is _UNRESOLVED:
-            return is_contact(status)
-        return status is not _SEPARATED
+        self._hold(status, witness, approximate, error_bound, stats)
+        # What is None is so by default.
+        rest = {"contained": contained, "part_a": part_a, "part_b": part_b}
+        vars(self).update((name, value) for name, value in rest.items() if value is not None)
 
 
-# Only made where they are looked at: that takes as long as many a question. Set from here, so that
-# the field has no default.
-_late = cached_property(Collision._stats)
-_late.__set_name__(Collision, "stats")
-Collision.stats = _late  # type: ignore[assignment]
+# How the kernels' questions end: apart, touching, stopped.
+_OF_BODIES_AT_REST = Status.SEPARATED, Status.OVERLAP_AT_START, Status.UNRESOLVED
+kernels.set_answer_classes(
+    Collision,
+    QueryStats,
+    (Status.SEPARATED, Status.OVERLAP_AT_START, Status.UNRESOLVED),
+    is_contact,
+)

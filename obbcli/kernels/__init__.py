@@ -6,7 +6,12 @@ Everything with a tight loop lives behind this border. Arrays that cross it were
 
 from __future__ import annotations
 
+import copyreg
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
 from obbcli.kernels._core import (
+    AtRestAnswer,
     Contact,
     ContactPlace,
     ContactQuery,
@@ -17,7 +22,9 @@ from obbcli.kernels._core import (
     Fit,
     Limits,
     Placed,
+    PlacedBody,
     Pose,
+    QuickCall,
     Screw,
     Split,
     StaticQuery,
@@ -34,6 +41,9 @@ from obbcli.kernels._core import (
     keeps_denormals,
     primitive_first_contacts,
     primitive_intersects,
+    roots_are_apart,
+    set_answer_classes,
+    set_body_defaults,
     sweep,
     sweep_columns,
     swept_pairs,
@@ -46,7 +56,65 @@ if not keeps_denormals():
         "loaded before), which would void the proofs of obbtree; import obbcli first, or remove it"
     )
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_Class = TypeVar("_Class", bound=type)
+_Function = TypeVar("_Function", bound="Callable[..., Any]")
+
+
+def made_by_kernels(cls: _Class) -> _Class:
+    """Let objects of a frozen dataclass be made by the type of the kernels that it derives from.
+
+    That type makes what it can from the arguments of a call; for all others it calls `__init__` as
+    the class has it, under the name `_checked`. It holds fields under their names with an
+    underscore before, takes them over by `_hold`, and is pickled and copied by its fields.
+    """
+    made: Any = cls
+    base = made.__mro__[1]
+    if "__init__" in vars(base):
+        made._checked = made.__init__
+        del made.__init__
+    names = [field.name for field in fields(made) if hasattr(base, f"_{field.name}")]
+    for name in names:
+        # Only now: a dataclass would take it for the field's default.
+        setattr(made, name, getattr(base, f"_{name}"))
+    for name, value in vars(base).items():
+        if not name.startswith("_"):
+            setattr(made, name, value)  # so that the class documents it as its own
+
+    def reduced(self: Any) -> tuple[object, ...]:
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return copyreg.__newobj__, (type(self),), vars(self) | state  # type: ignore[attr-defined]
+
+    def set_state(self: Any, state: dict[str, object]) -> None:
+        rest = dict(state)
+        self._hold(*(rest.pop(name) for name in names))
+        vars(self).update(rest)
+
+    made.__reduce__, made.__setstate__ = reduced, set_state
+    return cls
+
+
+def asked_at_rest_first(limits: Limits) -> Callable[[_Function], _Function]:
+    """Let a call with two bodies at rest, and nothing else, be answered by the kernels alone.
+
+    Every other call goes to the function, as do those that cannot be answered. What is made looks
+    like the function: its name, documentation, signature and pickle are those of the function.
+
+    Args:
+        limits: of the function without further arguments.
+    """
+    from functools import update_wrapper
+
+    def quick(function: _Function) -> _Function:
+        return cast("_Function", update_wrapper(QuickCall(function, limits), function))
+
+    return quick
+
+
 __all__ = [
+    "AtRestAnswer",
     "Contact",
     "ContactPlace",
     "ContactQuery",
@@ -57,7 +125,9 @@ __all__ = [
     "Fit",
     "Limits",
     "Placed",
+    "PlacedBody",
     "Pose",
+    "QuickCall",
     "Screw",
     "Split",
     "StaticQuery",
@@ -65,14 +135,19 @@ __all__ = [
     "TreeBuilder",
     "TreeError",
     "ask_pairs",
+    "asked_at_rest_first",
     "block_checksums",
     "collide",
     "convex_hull",
     "crc32",
     "crc32_by_tables",
     "first_triangles_of_parts",
+    "made_by_kernels",
     "primitive_first_contacts",
     "primitive_intersects",
+    "roots_are_apart",
+    "set_answer_classes",
+    "set_body_defaults",
     "sweep",
     "sweep_columns",
     "swept_pairs",

@@ -1,6 +1,6 @@
 from collections.abc import Sequence
 import enum
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy
 from numpy.typing import NDArray
@@ -96,6 +96,12 @@ class Tree:
     @possible_node_count.setter
     def possible_node_count(self, arg: int, /) -> None: ...
 
+    @property
+    def is_labelled(self) -> bool: ...
+
+    @is_labelled.setter
+    def is_labelled(self, arg: bool, /) -> None: ...
+
 class TreeBuilder:
     def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.uint32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], fit: Fit, split: Split, leaf_size: int, max_depth: int, on_demand: bool, threads: int) -> None: ...
 
@@ -142,12 +148,60 @@ class FileTree:
     def fault(self) -> str: ...
 
 class Pose:
-    def __init__(self, rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', writable=False)], translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C', writable=False)]) -> None: ...
+    _rotation: NDArray[numpy.float64]
+    _translation: NDArray[numpy.float64]
+
+    def __init__(self, rotation: Any = None, translation: Any = None) -> None: ...
+
+    def _hold(self, rotation: Any, translation: Any, /) -> None: ...
+
+    @property
+    def is_identity(self) -> bool: ...
 
 class Placed:
-    def __init__(self, tree: Tree, pose: Pose) -> None: ...
+    def __init__(self, tree: Tree, pose: Pose, /) -> None: ...
 
-def collide(arg0: Placed, arg1: Placed, arg2: Limits, /) -> tuple[bool, bool, float, tuple[int, int] | None, float, tuple[int, int, int, int, int, int, int, int]]: ...
+class PlacedBody(Placed):
+    _shape: Any
+    _pose: Any
+    _motion: Any
+
+    def __init__(self, shape: Any, pose: Any = ..., motion: Any = ...) -> None: ...
+
+    def _hold(self, shape: Any, pose: Any, motion: Any, /) -> None: ...
+
+    @property
+    def placed(self) -> Placed | None: ...
+
+    @property
+    def at_rest(self) -> Placed | None: ...
+
+def set_body_defaults(pose: object, motion: object) -> None: ...
+
+def roots_are_apart(a: Placed, b: Placed) -> bool: ...
+
+class AtRestAnswer:
+    _status: Any
+    _witness: Any
+    _approximate: Any
+    _error_bound: Any
+    _stats: Any
+
+    def _hold(
+        self, status: Any, witness: Any, approximate: Any, error_bound: Any, stats: Any, /
+    ) -> None: ...
+
+    @property
+    def collides(self) -> bool: ...
+
+def set_answer_classes(collision: object, stats: object, statuses: tuple, is_contact: object) -> None: ...
+
+class QuickCall:
+    def __init__(self, function: Any, limits: Limits, /) -> None: ...
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any: ...
+
+def collide(a: Placed, b: Placed, limits: Limits, load_seconds: float, /) -> Any: ...
 
 def triangle_pairs(arg0: Placed, arg1: Placed, arg2: int, arg3: int, arg4: int, /) -> tuple[Annotated[NDArray[numpy.int64], dict(shape=(None, 2), writable=False)] | None, tuple[int, int, int, int]]: ...
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from obbcli import kernels
@@ -47,8 +46,9 @@ BodyShape: TypeAlias = Surface | str | os.PathLike[str]
 Shape: TypeAlias = BodyShape | Standing
 
 
+@kernels.made_by_kernels
 @dataclass(frozen=True, init=False, eq=False)
-class Body:
+class Body(kernels.PlacedBody):
     """A shape with its place and motion; taken wherever a tree, a mesh, a part or a path is.
 
     Args:
@@ -72,8 +72,9 @@ class Body:
     motion: Motion
 
     def __init__(self, shape: Shape, pose: Pose = _AS_LOADED, motion: Motion = _AT_REST) -> None:
-        # Trees belong to a layer above this one, so a shape is told by its attributes; by those of
-        # its type, since to ask a tree for its bounds may read a whole file.
+        # Trees at poses do not come here: the kernels look at them. Trees belong to a layer above
+        # this one, so a shape is told by its attributes; by those of its type, since to ask a tree
+        # for its bounds may read a whole file.
         posed = None
         if not hasattr(type(shape), "bounds") and not isinstance(shape, (str, os.PathLike)):
             posed = getattr(shape, "posed", None)
@@ -86,26 +87,10 @@ class Body:
         pose = motion.first_pose(pose)
         if posed is not None:
             shape, pose = posed(pose, is_absolute=motion.places_mesh)
-        # The fields are set past the frozen dataclass, whose own way takes three times as long.
-        fields = vars(self)
-        fields["shape"] = shape
-        fields["pose"] = pose
-        fields["motion"] = motion
+        self._hold(shape, pose, motion)
 
-    @cached_property
-    def placed(self) -> kernels.Placed | None:
-        """The tree at its pose as the kernels see it; None where the shape is no tree yet."""
-        tree = getattr(self.shape, "kernel", None)
-        return None if tree is None else kernels.Placed(tree, self.pose.kernel)
 
-    @cached_property
-    def at_rest(self) -> kernels.Placed | None:
-        """The same of a body that does not move.
-
-        None of others, and where a tree is labelled, as questions have to look at that first.
-        """
-        is_told = self.motion.is_at_rest and not getattr(self.shape, "is_labelled", False)
-        return self.placed if is_told else None
+kernels.set_body_defaults(_AS_LOADED, _AT_REST)
 
 
 def pivot_of(body: Body, surface: Surface) -> NDArray[np.float64]:

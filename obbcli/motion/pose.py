@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,8 +23,9 @@ _NO_TURN = as_floats(np.eye(3), (3, 3), "rotation", MotionError)
 _ORIGIN = as_vector((0.0, 0.0, 0.0), "translation", MotionError)
 
 
+@kernels.made_by_kernels
 @dataclass(frozen=True, init=False, eq=False)
-class Pose:
+class Pose(kernels.Pose):
     """Where a body is at t = 0: `x(0) = Q p + s`.
 
     Args:
@@ -52,10 +52,8 @@ class Pose:
     def __init__(
         self, rotation: ArrayLike | None = None, translation: ArrayLike | None = None
     ) -> None:
-        # The fields are set past the frozen dataclass, whose own way takes three times as long.
-        fields = vars(self)
-        fields["rotation"] = _as_rotation(rotation)
-        fields["translation"] = vector_or_zero(translation, "translation")
+        # Arrays of doubles and triples of numbers do not come here: the kernels look at them.
+        self._hold(_as_rotation(rotation), vector_or_zero(translation, "translation"))
 
     def __repr__(self) -> str:
         """Return what makes the same pose again."""
@@ -77,19 +75,16 @@ class Pose:
             MotionError: not finite.
         """
         pose = cls.__new__(cls)
-        object.__setattr__(pose, "rotation", as_floats(rotation, (3, 3), "rotation", MotionError))
-        object.__setattr__(pose, "translation", as_vector(translation, "translation", MotionError))
+        pose._hold(
+            as_floats(rotation, (3, 3), "rotation", MotionError),
+            as_vector(translation, "translation", MotionError),
+        )
         return pose
 
-    @cached_property
-    def is_identity(self) -> bool:
-        """Return whether the pose moves nothing; such a pose rounds nothing either."""
-        return not self.translation.any() and np.array_equal(self.rotation, np.eye(3))
-
-    @cached_property
+    @property
     def kernel(self) -> kernels.Pose:
-        """The pose as the kernels see it."""
-        return kernels.Pose(self.rotation, self.translation)
+        """The pose as the kernels see it: itself."""
+        return self
 
     def told(self) -> dict[str, object]:
         """Return the pose as documents show it: names and plain numbers."""

@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 from obbcli import kernels
 from obbcli.accuracy import Accuracy
 from obbcli.answers.collision import Collision
-from obbcli.motion.body import as_body
 from obbcli.questions.border import limits_of, placed_of, refused
-from obbcli.questions.pair_question import PairQuestion, trees_of
+from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
     from obbcli.answers.contact import FirstContact
     from obbcli.motion.body import Body, Shape
 
-_EXACT_LIMITS = limits_of(Accuracy())
 
-
+@kernels.asked_at_rest_first(limits_of(Accuracy()))
 def collide(
     a: Body | Shape,
     b: Body | Shape,
@@ -54,14 +52,6 @@ def collide(
         >>> answer.collides, answer.status.value
         (False, 'separated')
     """
-    if duration is None and accuracy is None and not solid:
-        # Bodies at rest on trees answer within a microsecond, so this path makes no other object.
-        here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
-        if here is not None and there is not None:
-            try:
-                return Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
-            except (ValueError, kernels.TreeError) as fault:
-                raise refused(trees_of((as_body(a), as_body(b))), fault) from fault
     return collide_pair(PairQuestion.of(a, b, duration, accuracy), solid=solid)
 
 
@@ -80,11 +70,10 @@ def collide_pair(pair: PairQuestion, *, solid: bool) -> Collision:
         return collision_of(query.advance(accuracy.max_iterations, accuracy.timeout))
     here, there = map(placed_of, pair.bodies, pair.trees)
     try:
-        found = kernels.collide(here, there, limits_of(accuracy))
+        found: Collision = kernels.collide(here, there, limits_of(accuracy), pair.load_seconds)
     except (ValueError, kernels.TreeError) as fault:
         raise refused(pair.trees, fault) from fault
-    answer = Collision.at_rest(found, pair.load_seconds)
-    return pair.with_parts(answer, answer.witness)
+    return pair.with_parts(found, found.witness)
 
 
 def collision_of(found: FirstContact) -> Collision:

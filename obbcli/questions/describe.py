@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
 from obbcli.accuracy import Accuracy
-from obbcli.answers.collision import Collision
 from obbcli.answers.contact import Contact, FirstContact
 from obbcli.answers.status import Status
 from obbcli.answers.words import EVIDENCES, FEATURES
@@ -17,6 +16,7 @@ from obbcli.questions.pair_question import trees_of
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Vector
     from obbcli.motion.body import Body
     from obbcli.questions.pair_question import Trees
@@ -128,7 +128,7 @@ def answer_at_rest(
     """
     trees = trees_of(bodies)
     try:
-        found = Collision.at_rest(kernels.collide(here, there, _EXACT_LIMITS))
+        found: Collision = kernels.collide(here, there, _EXACT_LIMITS, 0.0)
     except (ValueError, kernels.TreeError) as fault:
         raise refused(trees, fault) from fault
     contact = _SEPARATED

@@ -57,11 +57,12 @@ class TreeFacts:
         self.kernel = made.kernel
         self.unit: str | None = made.description.unit
         self.parts: tuple[PartRows, ...] = made.description.parts
+        self.kernel.is_labelled = self.unit is not None or bool(self.parts)
 
     @property
     def is_labelled(self) -> bool:
         """Whether a question compares its unit or names its parts, which the kernels do not."""
-        return self.unit is not None or bool(self.parts)
+        return self.kernel.is_labelled
 
     @cached_property
     def at_rest(self) -> kernels.Placed | None:

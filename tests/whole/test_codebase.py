@@ -23,8 +23,9 @@ LONGEST_FILE = 400
 # Each may import those of rows above it, and of its own row as long as no circle comes of it.
 LAYERS = (
     ("errors", "version"),
-    ("files", "arrays", "threads", "spelling", "accuracy", "answers", "manual"),
+    ("files", "arrays", "threads", "spelling", "accuracy", "manual"),
     ("kernels",),
+    ("answers",),
     ("mesh",),
     ("motion", "primitives"),
     ("tree",),

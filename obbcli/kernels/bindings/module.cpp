@@ -23,6 +23,10 @@ NB_MODULE(_core, m) {
     bind_hull(m);
     bind_tree(m);
     bind_file_tree(m);
+    bind_pose(m);
+    bind_placed(m);
+    bind_answer(m);
+    bind_quick_call(m);
     bind_static_query(m);
     bind_contact_query(m);
     bind_steady_pairs(m);

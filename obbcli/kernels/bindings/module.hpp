@@ -1,6 +1,7 @@
 // What the bindings share: arrays across the border, and the trees that keep theirs alive.
 #pragma once
 
+#include "at_rest/root_tests.hpp"
 #include "descent/limits.hpp"
 #include "shapes/pose.hpp"
 #include "tree/tree.hpp"
@@ -81,6 +82,9 @@ struct Tree {
     const obb::TreeBuilder* builder = nullptr; // of a tree that grows
     // How many boxes the whole tree has; where its builder leaves that open, at most.
     std::uint64_t possible_node_count = view.nodes.size();
+    // Whether it has a unit or names of parts: such bodies are asked about by Python functions,
+    // which compare the ones and tell the others.
+    bool is_labelled = false;
 
     [[nodiscard]] std::uint64_t node_count() const;
 };
@@ -92,8 +96,9 @@ using TreeObject = nb::typed<nb::object, Tree>;
 // longer than many a query does.
 struct Placed {
     nb::object owner;
-    const Tree* tree;
-    obb::Pose pose;
+    const Tree* tree = nullptr;
+    obb::Pose pose = {};
+    obb::RootBox root = {};
 };
 
 // Pops between two looks at clock and signals: a few milliseconds.
@@ -128,26 +133,6 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Advances a query to its end or to a limit, in pops or seconds; true when its answer is complete.
-// Throws what a signal's handler raised.
-template <typename Query>
-inline bool run(Query& query, std::uint64_t brief, std::uint64_t max_pops, const Stopwatch& watch,
-                double seconds) {
-    for (;;) {
-        const std::uint64_t before = query.counts().pops;
-        if (advance(query, brief, std::min(kPopsASlice, max_pops))) {
-            return true;
-        }
-        if (PyErr_CheckSignals() != 0) {
-            throw nb::python_error();
-        }
-        max_pops -= query.counts().pops - before;
-        if (max_pops == 0 || watch.seconds() >= seconds) {
-            return false;
-        }
-    }
-}
-
 // Lets handlers of signals run every now and then, for work that goes on without the GIL: called
 // between its slices. Throws what a handler raised.
 class SignalWatch {
@@ -168,15 +153,22 @@ class SignalWatch {
     mutable std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void bind_answer(nb::module_& m);
 void bind_containment(nb::module_& m);
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);
 void bind_file_tree(nb::module_& m);
 void bind_hull(nb::module_& m);
 void bind_limits(nb::module_& m);
+void bind_placed(nb::module_& m);
+void bind_pose(nb::module_& m);
 void bind_primitives(nb::module_& m);
+void bind_quick_call(nb::module_& m);
 void bind_static_query(nb::module_& m);
 void bind_steady_pairs(nb::module_& m);
 void bind_swept_pairs(nb::module_& m);
 void bind_sweep(nb::module_& m);
 void bind_tree(nb::module_& m);
+
+// How Python's objects for `obb::Pose` and `Placed` are read: wherever functions are bound.
+#include "bindings/objects.hpp"

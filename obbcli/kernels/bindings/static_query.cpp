@@ -24,19 +24,6 @@ Owned<std::int64_t, -1, 2> take_pairs(obb::StaticQuery& query) {
     return owned<Owned<std::int64_t, -1, 2>>(std::move(pairs), {count, 2});
 }
 
-void init_pose(
-    obb::Pose* self,
-    const nb::ndarray<const double, nb::numpy, nb::shape<3, 3>, nb::c_contig>& rotation,
-    const nb::ndarray<const double, nb::numpy, nb::shape<3>, nb::c_contig>& translation) {
-    new (self) obb::Pose;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            self->rotation.rows[i][k] = rotation(i, k);
-        }
-        self->translation[i] = translation(i);
-    }
-}
-
 obb::StaticQueryOptions options_of(const obb::Limits& limits) { return {.boxes = limits.boxes}; }
 
 void init_query(AtRest* self, const Placed& a, const Placed& b, const obb::Limits& limits) {
@@ -54,26 +41,36 @@ Witness witness_of(const obb::StaticQuery& query) {
     return found.empty() ? Witness{} : Witness{{found[0].a, found[0].b}};
 }
 
-// Whether the question was answered, whether boxes met, how far apart these hold what they stand
-// for, witness, seconds, counts and of either tree the boxes there are and may be
-using Collision =
-    std::tuple<bool, bool, double, Witness, double,
-               std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
-                          std::uint64_t, std::uint64_t, std::uint64_t>>;
-
-Collision collide(const Placed& a, const Placed& b, const obb::Limits& limits) {
+// Advances a query to its end or to a limit, in pops or seconds; true when its answer is complete.
+// The clock is looked at from the end of the first few pops on: two looks take a third of what a
+// question about bodies far from each other does. Throws what a signal's handler raised.
+bool run(obb::StaticQuery& query, std::uint64_t brief, const obb::Limits& limits, double& seconds) {
+    std::uint64_t max_pops = limits.max_pops;
+    brief = std::min(brief, max_pops);
+    if (query.advance(brief)) {
+        return true;
+    }
     const Stopwatch watch;
-    obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
-    const bool is_complete =
-        run(query, brief_pops(*a.tree, *b.tree), limits.max_pops, watch, limits.seconds);
-    const obb::WalkCounts& c = query.counts();
-    return {is_complete,
-            query.is_by_boxes(),
-            query.error_bound(),
-            witness_of(query),
-            watch.seconds(),
-            {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops, a.tree->node_count(),
-             b.tree->node_count(), a.tree->possible_node_count, b.tree->possible_node_count}};
+    bool is_complete = false;
+    do {
+        max_pops = limits.max_pops - query.counts().pops;
+        {
+            const nb::gil_scoped_release release;
+            is_complete = query.advance(std::min(kPopsASlice, max_pops));
+        }
+        if (!is_complete && PyErr_CheckSignals() != 0) {
+            throw nb::python_error();
+        }
+        seconds = watch.seconds();
+    } while (!is_complete && query.counts().pops < limits.max_pops && seconds < limits.seconds);
+    return is_complete;
+}
+
+nb::object collide(const Placed& a, const Placed& b, const obb::Limits& limits,
+                   double load_seconds) {
+    AtRestFound found = ask_at_rest(a, b, limits);
+    found.load_seconds = load_seconds;
+    return nb::steal(answer_of(found));
 }
 
 // More pairs than there is to be room for.
@@ -141,17 +138,33 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
 
 } // namespace
 
+AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& limits) {
+    AtRestFound found;
+    obb::WalkCounts counts{.box_tests = 1};
+    if (!obb::are_apart(a.root, b.root)) {
+        obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
+        found.is_complete = run(query, brief_pops(*a.tree, *b.tree), limits, found.seconds);
+        found.is_by_boxes = query.is_by_boxes();
+        found.error_bound = query.error_bound();
+        if (const auto pairs = query.pairs(); !pairs.empty()) {
+            found.has_witness = true;
+            found.triangle_a = pairs.front().a;
+            found.triangle_b = pairs.front().b;
+        }
+        counts = query.counts();
+    }
+    found.counts = {counts.box_tests,
+                    counts.triangle_tests,
+                    counts.exact_triangle_tests,
+                    counts.pops,
+                    a.tree->node_count(),
+                    b.tree->node_count(),
+                    a.tree->possible_node_count,
+                    b.tree->possible_node_count};
+    return found;
+}
+
 void bind_static_query(nb::module_& m) {
-    nb::class_<obb::Pose>(m, "Pose").def("__init__", &init_pose, "rotation"_a, "translation"_a);
-
-    nb::class_<Placed>(m, "Placed")
-        .def(
-            "__init__",
-            [](Placed* self, const TreeObject& tree, const obb::Pose& pose) {
-                new (self) Placed{tree, nb::cast<const Tree*>(tree), pose};
-            },
-            "tree"_a, "pose"_a);
-
     // Arguments without names cost less.
     m.def("collide", &collide);
     m.def("triangle_pairs", &triangle_pairs);

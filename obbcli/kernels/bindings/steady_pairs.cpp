@@ -26,7 +26,7 @@ enum class PairState : std::uint8_t {
 };
 
 // A tree at its pose, and its motion, of A and of B.
-using Bodies = std::tuple<const Placed*, const obb::Screw*, const Placed*, const obb::Screw*>;
+using Bodies = std::tuple<PlacedRef, const obb::Screw*, PlacedRef, const obb::Screw*>;
 
 obb::SteadyBody moving(const Placed& placed, const obb::Screw& screw) {
     return {&placed.tree->view, placed.pose, screw};

@@ -146,7 +146,8 @@ void bind_tree(nb::module_& m) {
         .def("boxes_of_level", &level_of, "level"_a)
         .def("last_boxes_under", &under, "slot"_a)
         .def_prop_ro("node_count", &Tree::node_count)
-        .def_rw("possible_node_count", &Tree::possible_node_count);
+        .def_rw("possible_node_count", &Tree::possible_node_count)
+        .def_rw("is_labelled", &Tree::is_labelled);
 
     nb::class_<TreeBuilder>(m, "TreeBuilder")
         .def("__init__", &init_builder, "vertices"_a, "corners"_a, "fit"_a, "split"_a,

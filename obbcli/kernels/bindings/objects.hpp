@@ -1,0 +1,142 @@
+// Objects of Python whose memory is laid out here, as the classes `Pose`, `Body` and `Collision` of
+// the package derive from them. Bound by nanobind they would take several times as long to make,
+// and that is most of what a question about two bodies far from each other takes.
+#pragma once
+
+#include "bindings/module.hpp"
+
+// ---- Poses
+
+struct PoseObject {
+    PyObject ob_base; // what every object begins with
+    obb::Pose pose;
+    PyObject* rotation; // read-only arrays, made when they are first looked at
+    PyObject* translation;
+};
+
+// What a Python object holds of a type made here; null for objects of other kinds.
+[[nodiscard]] PoseObject* as_pose(PyObject* object);
+
+// ---- Bodies, and trees where a pose puts them
+
+struct PlacedObject {
+    PyObject ob_base; // what every object begins with
+    PyObject* shape;  // of bodies, as the next two
+    PyObject* pose;
+    PyObject* motion;
+    Placed here; // no tree where the shape is none yet
+    bool rests;  // and has no labels that a question looks at
+};
+
+[[nodiscard]] PlacedObject* as_placed(PyObject* object);
+
+// One of many, as the memory of its object has it, which the caller keeps alive.
+struct PlacedRef {
+    const Placed* placed = nullptr;
+
+    const Placed& operator*() const { return *placed; }
+};
+
+// ---- Answers of bodies at rest
+
+struct AtRestFound {
+    bool is_complete = true, is_by_boxes = false, has_witness = false;
+    std::int64_t triangle_a = 0, triangle_b = 0;
+    double error_bound = 0;
+    double load_seconds = 0, seconds = 0;
+    std::array<std::uint64_t, 8> counts{}; // as `QueryStats` has them
+};
+
+// An answer of the class that was made known; a new reference, null with an error set.
+[[nodiscard]] PyObject* answer_of(const AtRestFound& found);
+
+// What the kernels say of two placed trees. Throws std::domain_error, obb::TreeError, and what a
+// signal's handler raised.
+[[nodiscard]] AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& limits);
+
+// ---- How functions bound by nanobind take them
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<obb::Pose> {
+    NB_TYPE_CASTER(obb::Pose, const_name("Pose"))
+
+    bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+        const PoseObject* object = as_pose(source.ptr());
+        if (object != nullptr) {
+            value = object->pose;
+        }
+        return object != nullptr;
+    }
+};
+
+template <>
+struct type_caster<Placed> {
+    NB_TYPE_CASTER(Placed, const_name("Placed"))
+
+    bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+        const PlacedObject* object = as_placed(source.ptr());
+        if (object == nullptr || object->here.tree == nullptr) {
+            return false;
+        }
+        value = object->here;
+        return true;
+    }
+};
+
+template <>
+struct type_caster<PlacedRef> {
+    NB_TYPE_CASTER(PlacedRef, const_name("Placed"))
+
+    bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+        const PlacedObject* object = as_placed(source.ptr());
+        value = {object == nullptr || object->here.tree == nullptr ? nullptr : &object->here};
+        return value.placed != nullptr;
+    }
+};
+
+} // namespace nanobind::detail
+
+// ---- What types made here have in common
+
+// Adds a type that Python classes may derive from to the module; a borrowed reference.
+PyTypeObject* add_type(nb::module_& m, const char* name, PyType_Spec& spec,
+                       PyTypeObject* base = nullptr);
+
+// Arguments of a call, by position or name; those not given are null. False where there are others
+// or one is given twice: the Python function that is asked then says so.
+template <std::size_t kCount>
+[[nodiscard]] bool take_arguments(PyObject* args, PyObject* kwargs,
+                                  const std::array<PyObject*, kCount>& names,
+                                  std::array<PyObject*, kCount>& values) {
+    const auto given = static_cast<std::size_t>(PyTuple_Size(args));
+    if (given > kCount) {
+        return false;
+    }
+    for (std::size_t k = 0; k < given; ++k) {
+        values[k] = PyTuple_GetItem(args, static_cast<Py_ssize_t>(k));
+    }
+    if (kwargs == nullptr) {
+        return true;
+    }
+    std::size_t named = 0;
+    for (std::size_t k = given; k < kCount; ++k) {
+        values[k] = PyDict_GetItemWithError(kwargs, names[k]);
+        named += values[k] != nullptr ? 1 : 0;
+    }
+    return named == static_cast<std::size_t>(PyDict_Size(kwargs));
+}
+
+// Calls the method `name` of an object, as its class or a class derived has it.
+[[nodiscard]] PyObject* call_method(PyObject* self, const char* name, PyObject* args,
+                                    PyObject* kwargs);
+// Replaces a reference that an object holds.
+inline void hold(PyObject*& place, PyObject* value) {
+    PyObject* before = place;
+    Py_XINCREF(value);
+    place = value;
+    Py_XDECREF(before);
+}
+// Gives the memory of an object back, and its hold on its type.
+void free_object(PyObject* self);

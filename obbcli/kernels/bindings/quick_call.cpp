@@ -1,0 +1,159 @@
+// `QuickCall`: a Python function, and in front of it the question about two bodies at rest, asked
+// in C++ alone: a Python function called for it would take as long as the question.
+#include "bindings/objects.hpp"
+
+#include <cstddef>
+#include <exception>
+#include <new>
+
+#if PY_VERSION_HEX < 0x030c0000 // later versions name these themselves
+#include <structmember.h>
+#define Py_T_PYSSIZET T_PYSSIZET
+#define Py_READONLY READONLY
+#endif
+
+namespace {
+
+struct CallObject {
+    PyObject ob_base; // what every object begins with
+    vectorcallfunc call;
+    PyObject* dict; // what functools.wraps() sets
+    PyObject* weak_references;
+    PyObject* function;
+    obb::Limits limits; // of a question without more arguments
+};
+
+PyObject* at_rest_name = nullptr;
+
+CallObject* cast(PyObject* self) { return reinterpret_cast<CallObject*>(self); }
+
+// A body at rest whose tree is there, or what else says that it is one, as trees do; else null.
+PlacedObject* resting(PyObject* object, nb::object& owner) {
+    PlacedObject* placed = as_placed(object);
+    if (placed == nullptr) {
+        owner = nb::steal(PyObject_GetAttr(object, at_rest_name));
+        if (!owner.is_valid()) {
+            if (PyErr_ExceptionMatches(PyExc_AttributeError) == 0) {
+                throw nb::python_error();
+            }
+            PyErr_Clear();
+            return nullptr;
+        }
+        placed = as_placed(owner.ptr());
+    }
+    return placed != nullptr && placed->here.tree != nullptr && placed->rests ? placed : nullptr;
+}
+
+// Null without an error where the function is to answer, which says too what is wrong.
+PyObject* quick_answer(const CallObject& self, PyObject* first, PyObject* second) try {
+    nb::object owner_a, owner_b;
+    const PlacedObject* a = resting(first, owner_a);
+    const PlacedObject* b = a == nullptr ? nullptr : resting(second, owner_b);
+    if (b == nullptr) {
+        return nullptr;
+    }
+    return answer_of(ask_at_rest(a->here, b->here, self.limits));
+} catch (nb::python_error& error) {
+    error.restore();
+    return nullptr;
+} catch (const std::exception&) {
+    return nullptr;
+}
+
+PyObject* call(PyObject* self, PyObject* const* args, std::size_t flags, PyObject* names) {
+    if (PyVectorcall_NARGS(flags) == 2 && names == nullptr) {
+        PyObject* answer = quick_answer(*cast(self), args[0], args[1]);
+        if (answer != nullptr || PyErr_Occurred() != nullptr) {
+            return answer;
+        }
+    }
+    return PyObject_Vectorcall(cast(self)->function, args, flags, names);
+}
+
+PyObject* new_call(PyTypeObject* type, PyObject* args, PyObject*) {
+    PyObject *function = nullptr, *limits = nullptr;
+    if (PyArg_ParseTuple(args, "OO", &function, &limits) == 0) {
+        return nullptr;
+    }
+    if (!nb::isinstance<obb::Limits>(nb::handle(limits))) {
+        PyErr_SetString(PyExc_TypeError, "a quick call takes a function and limits");
+        return nullptr;
+    }
+    PyObject* self = PyType_GenericAlloc(type, 0); // which clears it
+    if (self != nullptr) {
+        cast(self)->call = &call;
+        hold(cast(self)->function, function);
+        new (&cast(self)->limits) obb::Limits(*nb::inst_ptr<obb::Limits>(limits));
+    }
+    return self;
+}
+
+int visit_call(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    Py_VISIT(cast(self)->dict);
+    Py_VISIT(cast(self)->function);
+    return 0;
+}
+
+int clear_call(PyObject* self) {
+    Py_CLEAR(cast(self)->dict);
+    Py_CLEAR(cast(self)->function);
+    return 0;
+}
+
+void delete_call(PyObject* self) {
+    PyObject_GC_UnTrack(self);
+    if (cast(self)->weak_references != nullptr) {
+        PyObject_ClearWeakRefs(self);
+    }
+    (void)clear_call(self);
+    free_object(self);
+}
+
+// As a function, it is bound where it is an attribute of a class.
+PyObject* bind_call(PyObject* self, PyObject* object, PyObject*) {
+    if (object == nullptr || object == Py_None) {
+        Py_INCREF(self);
+        return self;
+    }
+    const nb::object method = nb::module_::import_("types").attr("MethodType");
+    return PyObject_CallFunctionObjArgs(method.ptr(), self, object, nullptr);
+}
+
+PyObject* shown(PyObject* self) { return PyObject_Repr(cast(self)->function); }
+
+// Pickled and copied as functions are: by name.
+PyObject* name_of(PyObject* self, PyObject*) {
+    return PyObject_GetAttrString(self, "__qualname__");
+}
+
+PyMemberDef call_members[] = {
+    {"__vectorcalloffset__", Py_T_PYSSIZET, offsetof(CallObject, call), Py_READONLY, nullptr},
+    {"__dictoffset__", Py_T_PYSSIZET, offsetof(CallObject, dict), Py_READONLY, nullptr},
+    {"__weaklistoffset__", Py_T_PYSSIZET, offsetof(CallObject, weak_references), Py_READONLY,
+     nullptr},
+    {}};
+PyGetSetDef call_properties[] = {
+    {"__dict__", &PyObject_GenericGetDict, &PyObject_GenericSetDict, nullptr, nullptr}, {}};
+PyMethodDef call_methods[] = {{"__reduce__", &name_of, METH_NOARGS, nullptr}, {}};
+PyType_Slot call_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&new_call)},
+                            {Py_tp_call, reinterpret_cast<void*>(&PyVectorcall_Call)},
+                            {Py_tp_descr_get, reinterpret_cast<void*>(&bind_call)},
+                            {Py_tp_repr, reinterpret_cast<void*>(&shown)},
+                            {Py_tp_dealloc, reinterpret_cast<void*>(&delete_call)},
+                            {Py_tp_traverse, reinterpret_cast<void*>(&visit_call)},
+                            {Py_tp_clear, reinterpret_cast<void*>(&clear_call)},
+                            {Py_tp_members, call_members},
+                            {Py_tp_getset, call_properties},
+                            {Py_tp_methods, call_methods},
+                            {0, nullptr}};
+PyType_Spec call_spec{"obbcli.kernels._core.QuickCall", sizeof(CallObject), 0,
+                      Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_HAVE_VECTORCALL,
+                      call_slots};
+
+} // namespace
+
+void bind_quick_call(nb::module_& m) {
+    at_rest_name = PyUnicode_InternFromString("at_rest");
+    (void)add_type(m, "QuickCall", call_spec);
+}
