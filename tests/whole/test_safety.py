@@ -23,6 +23,8 @@ UNSAFE_MODULES = {
     *("urllib.request", "requests", "urllib3", "httpx", "aiohttp", "yaml", "h5py", "netCDF4"),
     *("distributed", "dask", "asyncio"),
 }
+#: Threads of the same process, by name: pools of processes come from the same module.
+THREADS = {"concurrent.futures.ThreadPoolExecutor", "concurrent.futures.wait"}
 UNSAFE_CALLS = {"eval", "exec", "compile", "__import__", "input", "breakpoint"}
 UNSAFE_METHODS = {
     *(f"os.{name}" for name in ("system", "popen", "fork", "execv", "execve", "spawnv")),
@@ -51,6 +53,7 @@ def unsafe_imports(tree: ast.Module) -> set[str]:
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    names -= THREADS
     parts = {".".join(name.split(".")[:count]) for name in names for count in (1, 2)}
     return parts & UNSAFE_MODULES
 
@@ -90,7 +93,14 @@ def test_modules_are_imported_by_name_in_a_few_places_alone() -> None:
 
 @pytest.mark.parametrize(
     "source",
-    ["import pickle", "from urllib.request import urlopen", "def f():\n    import socket as s"],
+    [
+        *(
+            "import pickle",
+            "from urllib.request import urlopen",
+            "def f():\n    import socket as s",
+        ),
+        *("import concurrent.futures", "from concurrent.futures import ProcessPoolExecutor"),
+    ],
 )
 def test_imports_are_found_wherever_they_stand(source: str) -> None:
     assert unsafe_imports(ast.parse(source))
