@@ -18,6 +18,7 @@ from obbcli.threads import both
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from obbcli.cli.lengths import Lengths
     from obbcli.mesh import Mesh
     from obbcli.tree.tree import ObbTree
 
@@ -34,6 +35,7 @@ class Input(NamedTuple):
         sha256: of the bytes read, where they are known already.
         seconds: s of wall time that reading and building took.
         stamp: of the file before it was read; None where it is no file.
+        remarks: what is said of it beside the notes of its mesh.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Input(NamedTuple):
     sha256: str | None
     seconds: float
     stamp: tuple[int, ...] | None = None
+    remarks: tuple[str, ...] = ()
 
     def source(self, *, with_sha256: bool) -> Source:
         """Return what a record says of it.
@@ -52,21 +55,8 @@ class Input(NamedTuple):
         digest = self.sha256
         if with_sha256 and digest is None:
             digest = file_sha256(file_of(self.name), self.stamp)
-        return Source.of(self.name, digest, self.tree)
-
-
-class Lengths(NamedTuple):
-    """What becomes of a mesh's coordinates before anything is asked.
-
-    Attributes:
-        unit: that they are scaled to; None: of no matter.
-        scale: by which they are multiplied, whatever unit the file states; None: by none.
-        weld: the distance within which vertices become one, before they are scaled; None: none do.
-    """
-
-    unit: str | None
-    scale: float | None
-    weld: float | None = None
+        source = Source.of(self.name, digest, self.tree)
+        return source._replace(notes=(*source.notes, *self.remarks))
 
 
 class Piped(NamedTuple):
@@ -116,6 +106,10 @@ def read_pair(
     """
     if a == b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
+    if lengths[0] is not None and lengths[0].sag is not None:
+        from obbcli.cli.lengths import shared_sag
+
+        lengths = shared_sag((a, b), lengths)
     if a == b and lengths[0] == lengths[1]:
         first = read(a, lengths[0], verify=verify, hashed=hashed, progress=progress)
         return first, first
@@ -158,17 +152,20 @@ def read(
 
     start = time.perf_counter()
     stamp = stamp_of(file_of(name))
-    shape, sha256 = read_shape(name, verify=verify, hashed=hashed)
-    shape = measured(shape, lengths, name)
+    sag = None if lengths is None else lengths.sag
+    shape, sha256 = read_shape(name, verify=verify, hashed=hashed, sag=sag)
+    if lengths is not None:
+        shape = lengths.measured(shape, name)
     if isinstance(shape, Mesh):
         with bar(f"building over {name}", len(shape.triangles), wanted=progress) as move:
             shape = ObbTree.build(shape, progress=move)
         shape = shape.with_root() if roots else shape
-    return Input(name, shape, sha256, time.perf_counter() - start, stamp)
+    remarks = () if lengths is None else lengths.remarks
+    return Input(name, shape, sha256, time.perf_counter() - start, stamp, remarks)
 
 
 def read_shape(
-    name: str, *, verify: bool, hashed: bool = True
+    name: str, *, verify: bool, hashed: bool = True, sag: float | None = None
 ) -> tuple[Mesh | ObbTree, str | None]:
     """Return what a file or standard input holds, and the SHA-256 of its bytes where it is known.
 
@@ -176,6 +173,7 @@ def read_shape(
         name: a path, `FILE#PATTERN`, or `-` for standard input.
         verify: whether a tree file's checksums are compared.
         hashed: whether the SHA-256 of a mesh or a stream is found; that of a tree file is not.
+        sag: how far triangles may be from exact surfaces of a mesh file; None: the default.
 
     Raises:
         MeshError: the mesh cannot be read or is refused.
@@ -187,54 +185,20 @@ def read_shape(
 
     piped = read_piped(name)
     if piped is not None:
-        return _from_bytes(piped, verify=verify, hashed=hashed)
+        return _from_bytes(piped, verify=verify, hashed=hashed, sag=sag)
     file, pattern = file_and_pattern(name)
     path = Path(file)
     check_file(path)
     if pattern is not None:
-        mesh = _selected(path, pattern, hashed=hashed)
+        mesh = _selected(path, pattern, hashed=hashed, sag=sag)
         return mesh, mesh.sha256
     if _is_tree(path):
         return ObbTree.open(name, verify=verify), None
-    mesh = load_mesh(name, hashed=hashed)
+    mesh = load_mesh(name, hashed=hashed, sag=sag)
     return mesh, mesh.sha256
 
 
-def measured(shape: Mesh | ObbTree, lengths: Lengths | None, name: str) -> Mesh | ObbTree:
-    """Return a shape welded, then in the unit or by the scale that is asked for.
-
-    Raises:
-        MeshError: a tree file is of another unit, or would be scaled or welded, which its boxes do
-            not allow; a coordinate leaves the range of double; vertices cannot be welded.
-    """
-    from obbcli.mesh import Mesh
-
-    if lengths is None:
-        return shape
-    unit, scale, weld = lengths
-    if isinstance(shape, Mesh):
-        try:
-            if weld is not None:
-                shape = shape.welded(weld)
-            if scale is not None:
-                return shape.scaled(scale, unit)
-            return shape if unit is None else shape.in_unit(unit)
-        except MeshError as fault:
-            raise MeshError(name, f"{fault.where}: {fault.fault}", fault.remedy) from fault
-    source = shape.source or "MESH"
-    if weld is not None:
-        remedy = f"build one: obbtree build {source} --weld {weld!r} -o FILE"
-        raise MeshError(name, "is a tree file, which is not welded", remedy)
-    if scale is not None:
-        remedy = f"build one: obbtree build {source} --scale {scale!r} -o FILE"
-        raise MeshError(name, "is a tree file, which is not scaled", remedy)
-    if unit is not None and shape.unit not in (None, unit):
-        remedy = f"build one: obbtree build {source} --unit {unit} -o FILE"
-        raise MeshError(name, f"is a tree in {shape.unit}, not {unit}", remedy)
-    return shape
-
-
-def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:
+def _selected(path: Path, pattern: str, *, hashed: bool, sag: float | None) -> Mesh:
     """Return the parts of a mesh file that a pattern takes, as one mesh."""
     from obbcli.mesh.parts.load import load_selection
 
@@ -242,7 +206,7 @@ def _selected(path: Path, pattern: str, *, hashed: bool) -> Mesh:
         fault = f"has no parts to take '{pattern}' from"
         remedy = "build a tree of the parts: obbtree build 'MESH#PATTERN' -o FILE"
         raise MeshError(str(path), fault, "name a file" if path.is_fifo() else remedy)
-    return load_selection(path, pattern, hashed=hashed)
+    return load_selection(path, pattern, hashed=hashed, sag=sag)
 
 
 def read_piped(name: str) -> Piped | None:
@@ -265,7 +229,9 @@ def read_piped(name: str) -> Piped | None:
     return Piped(data, suffix if suffix in known_suffixes() else None, name)
 
 
-def _from_bytes(piped: Piped, *, verify: bool, hashed: bool) -> tuple[Mesh | ObbTree, str | None]:
+def _from_bytes(
+    piped: Piped, *, verify: bool, hashed: bool, sag: float | None
+) -> tuple[Mesh | ObbTree, str | None]:
     """Return what a stream held."""
     from obbcli.mesh import digest_of, load_mesh_bytes
     from obbcli.tree.header import is_tree_file
@@ -274,7 +240,7 @@ def _from_bytes(piped: Piped, *, verify: bool, hashed: bool) -> tuple[Mesh | Obb
     if is_tree_file(piped.data):
         tree = ObbTree.from_bytes(piped.data, piped.place, verify=verify)
         return tree, digest_of(piped.data)() if hashed else None
-    mesh = load_mesh_bytes(piped.data, piped.suffix, name=piped.place, hashed=hashed)
+    mesh = load_mesh_bytes(piped.data, piped.suffix, name=piped.place, hashed=hashed, sag=sag)
     return mesh, mesh.sha256
 
 

@@ -25,6 +25,7 @@ TOPICS = (
     "guarantees",
     "evidence",
     "formats",
+    "step",
     "tree-files",
     "limits",
     "security",

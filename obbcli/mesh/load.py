@@ -18,21 +18,25 @@ if TYPE_CHECKING:
     from obbcli.mesh.source import MeshArrays
 
 
-def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
+def load_mesh(
+    path: str | os.PathLike[str], *, hashed: bool = True, sag: float | None = None
+) -> Mesh:
     """Return the mesh in a file: its suffix, in any case, says which format is expected.
 
     Triangle ids are rows of the file's faces after triangulation, in the file's order; polygons
     of n corners become n - 2 rows, cells the faces that `cell_surface.surface` lists.
 
     Args:
-        path: the file, which gzip may have packed where it is STL, OBJ or PLY; or `"FILE#PATTERN"`,
-            the parts of it whose paths match, placed and joined.
+        path: the file, which gzip may have packed where it is STL, OBJ, PLY or STEP; or
+            `"FILE#PATTERN"`, the parts of it whose paths match, placed and joined.
         hashed: whether the mesh's `sha256` is found, which for a large file costs as much time as
             to read it.
+        sag: how far triangles may be from the exact surfaces of a STEP file, in the file's unit;
+            None: 1e-3 of each product's size.
 
     Raises:
-        MeshError: it cannot be read, is not what its name says, holds no usable surface, or no
-            part matches.
+        MeshError: it cannot be read, is not what its name says, holds no usable surface, no part
+            matches, or a sag is given for a file without exact surfaces.
 
     Example:
         >>> load_mesh("sample_meshes/gear.stl")
@@ -40,35 +44,41 @@ def load_mesh(path: str | os.PathLike[str], *, hashed: bool = True) -> Mesh:
     """
     measure: Callable[[Mesh], Mesh] | None = getattr(path, "measure", None)  # of `MeasuredFile`
     if measure is not None:
-        return measure(load_mesh(os.fspath(path), hashed=hashed))
+        own = getattr(path, "sag", None) if sag is None else sag
+        return measure(load_mesh(os.fspath(path), hashed=hashed, sag=own))
     name, pattern = file_and_pattern(os.fspath(path))
     if pattern is not None:
         from obbcli.mesh.parts.load import load_selection
 
-        return load_selection(name, pattern, hashed=hashed)
+        return load_selection(name, pattern, hashed=hashed, sag=sag)
     path = Path(path)
     # Before the suffix: of a file that is not there nothing else is worth saying.
     check_file(path)
     suffix = suffix_of(path.name)
-    if suffix == ".stl" and not hashed and path.is_file():
+    if suffix == ".stl" and not hashed and sag is None and path.is_file():
         arrays = _read_binary_stl(path)
         if arrays is not None:
             return mesh_of(arrays, Source(str(path), path.name, b"", path), None)
-    return _load(content_of(path, suffix), suffix, hashed=hashed)
+    return _load(content_of(path, suffix, sag), suffix, hashed=hashed)
 
 
 def load_mesh_bytes(
-    data: bytes, suffix: str | None = None, *, name: str = "<stdin>", hashed: bool = True
+    data: bytes,
+    suffix: str | None = None,
+    *,
+    name: str = "<stdin>",
+    hashed: bool = True,
+    sag: float | None = None,
 ) -> Mesh:
     """Return the mesh in `data`, which is what a file with `suffix` would hold.
 
-    Without a suffix the beginning must say what it is: STL, OBJ, PLY, OFF, GLB, VTK, VTU and Gmsh
-    do.
+    Without a suffix the beginning must say what it is: STL, OBJ, PLY, OFF, GLB, STEP, VTK, VTU and
+    Gmsh do.
 
     Raises:
         MeshError: as in `load_mesh`; `name` is the place named.
     """
-    source, known = source_of_bytes(data, suffix, name)
+    source, known = source_of_bytes(data, suffix, name, sag)
     return _load(source, known, hashed=hashed)
 
 

@@ -22,6 +22,7 @@ class MeasuredFile(os.PathLike[str]):
         own: the unit that it is in, in place of what it states; None: what it states.
         scale: by which it is multiplied, in place of what it states; None: by none.
         weld: within which distance vertices become one, before they are scaled; None: none do.
+        sag: how far triangles may be from exact surfaces, in the file's unit; None: the default.
     """
 
     path: str
@@ -29,6 +30,7 @@ class MeasuredFile(os.PathLike[str]):
     own: str | None = None
     scale: float | None = None
     weld: float | None = None
+    sag: float | None = None
 
     def __fspath__(self) -> str:
         return self.path
@@ -60,7 +62,9 @@ class MeasuredFile(os.PathLike[str]):
         Raises:
             MeshError: it would.
         """
-        remedy = "build a tree of the mesh with --unit, --scale or --weld"
+        remedy = "build a tree of the mesh with --unit, --scale, --weld or --sag"
+        if self.sag is not None:
+            raise MeshError(self.path, "is a tree file, whose triangles are cut", remedy)
         if self.weld is not None:
             raise MeshError(self.path, "is a tree file, which is not welded", remedy)
         if self.scale is not None:

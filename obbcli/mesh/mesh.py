@@ -50,6 +50,8 @@ class Mesh:
         notes: what of the file was taken with a change, a sentence each.
         unit: the length of 1 that the file states (`"m"`, `"mm"`, ...), or None.
         parts: the parts of the file that were selected, with their rows; empty where all was taken.
+        sag: how far triangles are at most from the exact surfaces that they were cut from (STEP),
+            mesh units; None where the file holds triangles.
 
     Raises:
         MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
@@ -67,6 +69,7 @@ class Mesh:
     notes: tuple[str, ...]
     unit: str | None
     parts: tuple[PartRows, ...]
+    sag: float | None
 
     def __init__(
         self,
@@ -78,6 +81,7 @@ class Mesh:
         *,
         unit: str | None = None,
         parts: Iterable[PartRows] = (),
+        sag: float | None = None,
     ) -> None:
         prefix = f"{source}: " if source else ""
         checked = _checked_vertices(vertices, prefix)
@@ -90,6 +94,7 @@ class Mesh:
         put(self, "notes", tuple(map(_printable, notes)))
         put(self, "unit", unit)
         put(self, "parts", tuple(parts))
+        put(self, "sag", sag)
 
     def __repr__(self) -> str:
         source = f", source={self.source!r}" if self.source else ""
@@ -108,9 +113,10 @@ class Mesh:
 
         checked_unit(unit)
         if self.unit is None or self.unit == unit:
-            return self._with(self.vertices, unit)
+            return self._changed(unit=unit)
         vertices, note = converted(self.vertices, self.unit, unit)
-        return self._with(vertices, unit, note)
+        sag = self.sag and float(converted(np.array([self.sag]), self.unit, unit)[0][0])
+        return self._changed(note, vertices=vertices, unit=unit, sag=sag)
 
     def stated(self, unit: str | None) -> Mesh:
         """Return the mesh with the same coordinates, taken to be in another unit.
@@ -120,7 +126,7 @@ class Mesh:
         """
         from obbcli.mesh.units import checked_unit
 
-        return self._with(self.vertices, None if unit is None else checked_unit(unit))
+        return self._changed(unit=None if unit is None else checked_unit(unit))
 
     def scaled(self, factor: float, unit: str | None = None) -> Mesh:
         """Return the mesh with coordinates fl(p factor), in `unit`, whatever its file states.
@@ -134,7 +140,8 @@ class Mesh:
         if unit is not None:
             checked_unit(unit)
         vertices, note = scaled(self.vertices, factor)
-        return self._with(vertices, unit, note)
+        sag = self.sag and self.sag * float(factor)
+        return self._changed(note, vertices=vertices, unit=unit, sag=sag)
 
     def welded(self, distance: float) -> Mesh:
         """Return the mesh with vertices within `distance` at the place of the first of them.
@@ -148,16 +155,15 @@ class Mesh:
         from obbcli.mesh.weld import note_of, welded
 
         done = welded(self.vertices, self.triangles, distance)
-        return self._with(done.vertices, self.unit, note_of(done, distance))
+        sag = self.sag and self.sag + done.farthest
+        return self._changed(note_of(done, distance), vertices=done.vertices, sag=sag)
 
-    def _with(
-        self, vertices: NDArray[np.float64], unit: str | None, note: str | None = None
-    ) -> Mesh:
-        """Return the mesh with other vertices, in a unit."""
-        vertices.setflags(write=False)
-        notes = self.notes if note is None else (*self.notes, note)
-        about = (self.source, self.sha256, notes)
-        return Mesh(vertices, self.triangles, *about, unit=unit, parts=self.parts)
+    def _changed(self, note: str = "", **changes: Any) -> Mesh:
+        """Return the mesh with other vertices, unit or sag, and with one more note."""
+        changes.get("vertices", self.vertices).setflags(write=False)
+        kept = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        notes = (*self.notes, note) if note else self.notes
+        return Mesh(**kept | {"notes": notes} | changes)
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:
@@ -223,9 +229,8 @@ def _checked_vertices(value: ArrayLike, prefix: str) -> NDArray[np.float64]:
     if array.dtype.kind not in "fiu":
         raise MeshError(f"{prefix}vertices", f"have type {array.dtype}, expected numbers")
     if len(array) > MAX_COUNT:
-        raise MeshError(
-            f"{prefix}vertices", f"{len(array)} vertices, at most {MAX_COUNT}", "split the mesh"
-        )
+        fault = f"{len(array)} vertices, at most {MAX_COUNT}"
+        raise MeshError(f"{prefix}vertices", fault, "split the mesh")
     vertices = _frozen(array, np.float64)
     # One pass: a sum of finite values can only mislead by overflowing, and then all are looked at.
     with np.errstate(over="ignore", invalid="ignore"):
@@ -246,11 +251,8 @@ def _checked_triangles(value: ArrayLike, vertex_count: int, prefix: str) -> NDAr
     """Return `value` as read-only, C-contiguous int32 (F, 3), every index below `vertex_count`."""
     array = _array(value, "triangles", prefix)
     if len(array) == 0:
-        raise MeshError(
-            f"{prefix}triangles",
-            "none found, at least one wanted",
-            "a mesh is a surface of triangles",
-        )
+        fault, remedy = "none found, at least one wanted", "a mesh is a surface of triangles"
+        raise MeshError(f"{prefix}triangles", fault, remedy)
     if len(array) > MAX_COUNT:
         raise MeshError(
             f"{prefix}triangles", f"{len(array)} triangles, at most {MAX_COUNT}", "split the mesh"

@@ -8,7 +8,7 @@ import zlib
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from obbcli.mesh.formats import FORMATS, PACKED_SUFFIX
+from obbcli.mesh.formats import FORMATS, PACKED_SUFFIXES
 from obbcli.mesh.formats.sniff import HEAD_BYTES
 from obbcli.mesh.source import checked_source, most_bytes
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from obbcli.mesh.source import Source
 
 #: Suffixes of the formats that are read packed.
-FORMATS_READ = (".stl", ".obj", ".ply")
-_NAMES = "STL, OBJ and PLY"
+FORMATS_READ = (".stl", ".obj", ".ply", ".step", ".stp", ".stpz")
+_NAMES = "STL, OBJ, PLY and STEP"
 #: What may always be unpacked, bytes; more only up to this many times the file's own size. Meshes
 #: pack to a third or a tenth, texts that repeat themselves to a fiftieth, and a bomb of zeros to a
 #: thousandth.
@@ -51,7 +51,7 @@ def unpacked(source: Source) -> Source:
         raise source.error("is a gzip file that is damaged", _AGAIN) from fault
     except MemoryError as fault:
         raise source.error("does not fit into memory when it is unpacked") from fault
-    if source.path is not None and source.path.suffix.lower() != PACKED_SUFFIX:
+    if source.path is not None and source.path.suffix.lower() not in PACKED_SUFFIXES:
         source.note("is packed by gzip by its content, and is read as such")
     return checked_source(replace(source, data=data, stored=source.data))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from obbcli.mesh.source import MeshArrays
 
 
-def content_of(path: Path, suffix: str) -> Source:
-    """Return what a file holds, unpacked.
+def content_of(path: Path, suffix: str, sag: float | None = None) -> Source:
+    """Return what a file holds, unpacked; `sag` is what exact surfaces of it are cut with.
 
     Raises:
         MeshError: it cannot be read, or is no mesh by its beginning.
@@ -38,16 +39,18 @@ def content_of(path: Path, suffix: str) -> Source:
                 refuse_other(inside, suffix)
         else:
             _suffix_told(head, suffix)
-    return plain(read_source(path))
+    return plain(_cut_with(sag, read_source(path)))
 
 
-def source_of_bytes(data: bytes, suffix: str | None, name: str) -> tuple[Source, str]:
+def source_of_bytes(
+    data: bytes, suffix: str | None, name: str, sag: float | None = None
+) -> tuple[Source, str]:
     """Return what a stream brought, unpacked, and the suffix of its format, in lower case.
 
     Raises:
         MeshError: it is empty, or there is no suffix and its beginning says not what it is.
     """
-    source = plain(checked_source(Source(name, name, bytes(data))))
+    source = plain(_cut_with(sag, checked_source(Source(name, name, bytes(data)))))
     if suffix is not None:
         return source, suffix.lower()
     found = beginning(source.data)
@@ -56,6 +59,15 @@ def source_of_bytes(data: bytes, suffix: str | None, name: str) -> tuple[Source,
         fault = "does not begin as any known format does"
         raise source.error(fault, "put it into a file whose suffix tells its format")
     return source, found.suffix
+
+
+def _cut_with(sag: float | None, source: Source) -> Source:
+    """Return a source whose exact surfaces are to be cut with a sag."""
+    if sag is None:
+        return source
+    from obbcli.mesh.sag import checked_sag
+
+    return replace(source, sag=checked_sag(sag))
 
 
 def plain(source: Source) -> Source:
@@ -86,6 +98,10 @@ def reading(
 ) -> Iterator[tuple[str, Callable[[], str] | None]]:
     """Yield a file's suffix as its content tells it, and what waits for its hash."""
     told = _suffix_told(source, suffix)
+    if source.sag is not None and not FORMATS[told].is_exact:
+        from obbcli.mesh.sag import no_exact_surfaces
+
+        raise no_exact_surfaces(source)
     stored = source.data
     if source.stored is not None:
         from obbcli.mesh.packed import refuse_other_formats
@@ -121,6 +137,7 @@ def mesh_of(
             source.notes,
             unit=source.unit,
             parts=parts,
+            sag=source.stated_sag,
         )
     except MeshError as fault:
         where = fault.where.replace(source.name, source.place, 1)

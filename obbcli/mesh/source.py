@@ -39,6 +39,9 @@ class Source:
         notes: what readers said of it so far; they become `Mesh.notes`.
         units: the length unit that the file or its format states, as `Mesh.unit`; empty or one.
         stored: the bytes as they lie in the file, where `data` was unpacked from them, else None.
+        sag: how far triangles may be from exact surfaces that they are cut from, in the file's
+            unit; None: 1e-3 of the size.
+        sags: the sag that exact surfaces were cut with; empty or one.
     """
 
     place: str
@@ -48,6 +51,8 @@ class Source:
     notes: list[str] = field(default_factory=list)
     units: list[str] = field(default_factory=list)
     stored: bytes | None = None
+    sag: float | None = None
+    sags: list[float] = field(default_factory=list)
 
     @property
     def unit(self) -> str | None:
@@ -57,6 +62,15 @@ class Source:
     def state_unit(self, unit: str) -> None:
         """Tell the unit of length that the file or its format states, such as `"mm"`."""
         self.units[:] = [unit]
+
+    @property
+    def stated_sag(self) -> float | None:
+        """How far triangles are from exact surfaces; None where the file has none."""
+        return self.sags[0] if self.sags else None
+
+    def state_sag(self, sag: float) -> None:
+        """Tell how far triangles are, at most, from the exact surfaces that they were cut from."""
+        self.sags[:] = [sag]
 
     def note(self, text: str) -> None:
         """Tell what is taken with a change, such as "12 quads cut into 24 triangles".

@@ -232,7 +232,7 @@ class Assembly:
         return f"Assembly({len(self.parts)} parts, source={self.source!r})"
 
 
-def load_parts(path: str | os.PathLike[str]) -> Assembly:
+def load_parts(path: str | os.PathLike[str], *, sag: float | None = None) -> Assembly:
     """Return the parts of a mesh file; what they hold is decoded when it is asked for.
 
     Nodes of glTF and COLLADA, objects of 3MF, `o` of OBJ (`g` where no `o` stands), solids of an
@@ -244,9 +244,12 @@ def load_parts(path: str | os.PathLike[str]) -> Assembly:
 
     Args:
         path: the file, or `"FILE#PATTERN"`.
+        sag: how far triangles may be from the exact surfaces of a STEP file, in the file's unit;
+            None: 1e-3 of each product's size.
 
     Raises:
-        MeshError: the file cannot be read or is refused, or no part matches.
+        MeshError: the file cannot be read or is refused, no part matches, or a sag is given for a
+            file without exact surfaces.
 
     Example:
         >>> assembly = load_parts("sample_meshes/nut.obj")
@@ -254,7 +257,7 @@ def load_parts(path: str | os.PathLike[str]) -> Assembly:
         (['nut'], 3896)
     """
     name, pattern = file_and_pattern(os.fspath(path))
-    return assembly_of(read_parts(name, pattern))
+    return assembly_of(read_parts(name, pattern, sag=sag))
 
 
 def assembly_of(contents: FileParts) -> Assembly:
@@ -290,6 +293,7 @@ class _Maker:
         source = self._contents.source
         with self._lock:
             source.notes[:] = self._notes
+            source.sags.clear()
             arrays = placed(told.decode(), linear)
             if not len(arrays[1]):
                 raise source.error("has no faces", "leave it out", at=f"part '{told.path}'")

@@ -43,6 +43,7 @@ class Source(NamedTuple):
         notes: what of it was taken with a change, a sentence each.
         parts: those that a pattern selected, with their rows.
         unit: the length of 1, as it was asked for or as the file states it.
+        sag: how far triangles are from exact surfaces of the file at most, mesh units.
     """
 
     path: str
@@ -51,6 +52,7 @@ class Source(NamedTuple):
     notes: tuple[str, ...] = ()
     parts: tuple[PartRows, ...] = ()
     unit: str | None = None
+    sag: float | None = None
 
     @classmethod
     def of(cls, path: str, sha256: str | None, shape: Mesh | ObbTree | TreeHead) -> Source:
@@ -58,14 +60,15 @@ class Source(NamedTuple):
         from obbcli.mesh import Mesh
 
         count = len(shape.triangles) if isinstance(shape, Mesh) else shape.triangle_count
-        return cls(path, sha256, count, shape.notes, shape.parts, shape.unit)
+        return cls(path, sha256, count, shape.notes, shape.parts, shape.unit, shape.sag)
 
     def part(self) -> Record:
         """Return what a record says of it."""
         said = self._asdict() | {"notes": list(self.notes)}
-        del said["parts"], said["unit"]
-        if self.unit is not None:
-            said["unit"] = self.unit
+        del said["parts"]
+        for name in ("unit", "sag"):
+            if said[name] is None:
+                del said[name]
         return said | ({"parts": [rows._asdict() for rows in self.parts]} if self.parts else {})
 
 

@@ -35,7 +35,7 @@ T = TypeVar("T")
 _MOST_BYTES = 64 << 20
 _LONG_NUMBER = "a number has too many digits"
 _KEYS = ("duration", "accuracy", "solid", "unit", "body", "ignore")
-_BODY_KEYS = ("name", "mesh", "unit", "scale", "weld", "pose", "motion", "static", "group")
+_BODY_KEYS = ("name", "mesh", "unit", "scale", "weld", "sag", "pose", "motion", "static", "group")
 _CONSTANT_KEYS = ("linear_velocity", "angular_velocity", "pivot")
 _PATH_KEYS = ("times", "poses")
 _ACCURACY_KEYS = tuple(Accuracy().as_dict())
@@ -216,16 +216,15 @@ class _Reader:
         own = table.get("unit")
         if "unit" in table:
             self._named(f"{key}.", checked_unit, own)
-        scale, weld = (
+        scale, weld, sag = (
             above_zero(table[name], self._at(f"{key}.{name}")) if name in table else None
-            for name in ("scale", "weld")
+            for name in ("scale", "weld", "sag")
         )
         if scale is not None and own is not None:
             fault = "has unit and scale, of which the second takes the place of the first"
             raise SceneError(self._at(key), fault, "keep one")
-        if self._unit is None and own is None and scale is None and weld is None:
-            return mesh
-        return MeasuredFile(mesh, self._unit, own, scale, weld)
+        measures = (self._unit, own, scale, weld, sag)
+        return mesh if measures == (None,) * 5 else MeasuredFile(mesh, *measures)
 
     def _pose(self, table: Any, key: str) -> Pose:
         self._table(table, ("rotation", "translation"), self._at(key))

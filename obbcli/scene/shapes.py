@@ -102,5 +102,5 @@ def _key(shape: Shape) -> Hashable:
     file, pattern = file_and_pattern(os.fspath(shape))
     measures = None
     if isinstance(shape, MeasuredFile):
-        measures = shape.unit, shape.own, shape.scale, shape.weld
+        measures = shape.unit, shape.own, shape.scale, shape.weld, shape.sag
     return os.path.realpath(file), pattern, measures

@@ -214,6 +214,11 @@ class TreeFacts:
         """What of the mesh file was taken with a change, a sentence each; as `mesh`."""
         return self._made.description.notes
 
+    @property
+    def sag(self) -> float | None:
+        """How far triangles are from exact surfaces at most, mesh units; as `mesh`."""
+        return self._made.description.sag
+
     def part_of(self, triangle: int | None) -> str | None:
         """Return the path of the selected part that a triangle is of.
 

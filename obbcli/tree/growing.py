@@ -70,6 +70,7 @@ class Growth(TreeInMemory):
             notes=mesh.notes,
             unit=mesh.unit,
             parts=mesh.parts,
+            sag=mesh.sag,
         )
         self._builder = kernels.TreeBuilder(
             mesh.vertices,

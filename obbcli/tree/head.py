@@ -30,6 +30,7 @@ class TreeHead:
         notes: what of the mesh file was taken with a change, a sentence each.
         unit: the length of 1 that the mesh file states, or None.
         parts: the parts of the mesh file that were selected, with their rows.
+        sag: how far triangles are from exact surfaces at most, mesh units; None: there are none.
 
     Raises:
         TreeFileError: no tree file, another version, or damaged in its header.
@@ -48,6 +49,7 @@ class TreeHead:
         self.notes = header.description.notes
         self.unit = header.description.unit
         self.parts = header.description.parts
+        self.sag = header.description.sag
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:

@@ -37,7 +37,7 @@ ALIGNMENT = 64
 FIXED = struct.Struct("<8sIIIIQQQQiI")
 _CRC_OFFSET = 16
 # What a description may leave out, and what that means.
-_UNSAID: dict[str, Any] = {"notes": [], "unit": None, "parts": []}
+_UNSAID: dict[str, Any] = {"notes": [], "unit": None, "parts": [], "sag": None}
 NODE_BYTES = 64
 _CORNERS_BYTES, _ID_BYTES, _VERTEX_BYTES = 12, 4, 24
 
@@ -174,6 +174,7 @@ def _description(text: bytes, name: str, triangles: int) -> tuple[Description, S
         "notes": list,
         "unit": optional_text,
         "parts": list,
+        "sag": (float, type(None)),
     }
     try:
         fields = _UNSAID | json.loads(text)
@@ -200,6 +201,7 @@ def _description(text: bytes, name: str, triangles: int) -> tuple[Description, S
         "notes": all(isinstance(note, str) and note.isprintable() for note in notes),
         "unit": (fields["unit"] or "").isprintable(),
         "parts": parts is not None,
+        "sag": description.sag is None or 0.0 < description.sag < inf,
     }
     for field, is_allowed in allowed.items():
         if not is_allowed:

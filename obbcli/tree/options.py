@@ -86,6 +86,8 @@ class Description:
         notes: what of the mesh file was taken with a change, a sentence each.
         unit: the length of 1 that the mesh file states; None where it states none.
         parts: the parts of the mesh file that were selected; empty where all was taken.
+        sag: how far triangles are at most from exact surfaces of the mesh file, mesh units; None
+            where it holds triangles.
     """
 
     fit: Fit
@@ -98,6 +100,7 @@ class Description:
     notes: tuple[str, ...] = ()
     unit: str | None = None
     parts: tuple[PartRows, ...] = ()
+    sag: float | None = None
 
 
 def kernel_limits(leaf_size: int, max_depth: int | None) -> tuple[int, int]:

@@ -253,6 +253,7 @@ def mesh_of(arrays: TreeArrays, place: str) -> Mesh:
             about.notes,
             unit=about.unit,
             parts=about.parts,
+            sag=about.sag,
         )
     except MeshError as fault:
         raise TreeFileError(place, str(fault), _REMEDY) from fault

@@ -18,10 +18,12 @@ class Target(NamedTuple):
     Args:
         seeds: returns inputs to begin with.
         run: takes any bytes; whatever it raises is a finding.
+        cost: as many times fewer inputs are run of it, as each takes a process of its own.
     """
 
     seeds: Callable[[], list[bytes]]
     run: Callable[[bytes], None]
+    cost: int = 1
 
 
 def require(holds: object, promise: str) -> None:

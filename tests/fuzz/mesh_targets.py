@@ -25,6 +25,7 @@ from mesh_files.gltf_documents import (
 from mesh_files.gltf_files import DOCUMENT, INDICES, POSITIONS, document, glb
 from mesh_files.nastran_decks import SEEDS
 from mesh_files.plain_files import FILES
+from mesh_files.step_files import STEP_SEEDS
 from mesh_files.threemf_files import ASSEMBLY, THREEMF_SEEDS, archive
 
 from obbcli.errors import MeshError
@@ -53,6 +54,7 @@ SUFFIXES = {
     "gltf": (".glb", ".gltf"),
     "threemf": (".3mf",),
     "collada": (".dae",),
+    "step": (".step",),
     "vtk": (".vtk",),
     "vtkxml": (".vtu", ".vtp", ".vti", ".vts", ".vtr", ".vtm"),
     "gmsh": (".msh",),
@@ -64,6 +66,8 @@ SUFFIXES = {
     "ucd": (".avs",),
     "others": (".vol", ".f3grid", ".xml"),
 }
+#: Formats whose readers start a process for each file.
+_COSTS = {"step": 20}
 
 
 def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
@@ -76,6 +80,7 @@ def _seeds(suffixes: tuple[str, ...]) -> list[bytes]:
     files += [(".glb", data) for data in _documents()]
     files += [(".3mf", data) for data in (*THREEMF_SEEDS, ASSEMBLY.encode())]
     files += [(".dae", data) for data in COLLADA_SEEDS]
+    files += [(".step", data) for data in STEP_SEEDS]
     files += _odd_files()
     files += _vtk_files()
     files += [(".bdf", deck.encode("ascii")) for deck in SEEDS]
@@ -206,6 +211,6 @@ def _deck(source: Source) -> tuple[object, ...] | None:
 
 
 TARGETS = {
-    name: Target(partial(_seeds, suffixes), partial(_run, suffixes))
+    name: Target(partial(_seeds, suffixes), partial(_run, suffixes), _COSTS.get(name, 1))
     for name, suffixes in SUFFIXES.items()
 }

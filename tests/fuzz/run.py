@@ -73,7 +73,7 @@ def mutate(name: str, target: Target, options: argparse.Namespace) -> bool:
     runs, slowest = 0, 0.0
     while (
         runs < len(known)
-        or runs - len(known) < options.runs
+        or runs - len(known) < options.runs // target.cost
         or time.process_time() - began < options.seconds
     ):
         data = known[runs] if runs < len(known) else mutated(random, random.choice(known), known)

@@ -116,8 +116,9 @@ def test_format_table_is_the_loader_s() -> None:
         for suffix in re.findall(r"`(\.\w+)`", suffixes)
     }
 
+    libraries = {"vtk": "VTK", "step": "Open CASCADE"}
     assert shown == {
-        suffix: (form.name, "meshio" if form.kind else "VTK" if form.key == "vtk" else "obbtree")
+        suffix: (form.name, "meshio" if form.kind else libraries.get(form.key, "obbtree"))
         for suffix, form in FORMATS.items()
     }
 

@@ -167,7 +167,7 @@ def test_load_mesh_refuses_an_empty_file(tmp_path, suffix):
 
 
 @pytest.mark.parametrize(
-    "name", ["model.step", "model", "model.stl.zip", "model.x3d", "model.obbt"]
+    "name", ["model.iges", "model", "model.stl.zip", "model.x3d", "model.obbt"]
 )
 def test_load_mesh_refuses_an_unknown_suffix_and_lists_the_known_ones(tmp_path, name):
     (tmp_path / name).write_bytes(OBJ)

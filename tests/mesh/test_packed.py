@@ -247,7 +247,7 @@ def test_any_damaged_byte_of_a_packed_mesh_gives_the_mesh_or_one_error(tmp_path)
         (gzip.compress(b"", mtime=0), "is empty, expected a mesh"),
         (
             gzip.compress(OFF, mtime=0),
-            "holds OFF, packed by gzip; read packed are STL, OBJ and PLY",
+            "holds OFF, packed by gzip; read packed are STL, OBJ, PLY and STEP",
         ),
         (gzip.compress(gzip.compress(OBJ, mtime=0), mtime=0), "is a gzip archive, not a mesh"),
         (gzip.compress(b"<!DOCTYPE html><html>", mtime=0), "is a web page"),

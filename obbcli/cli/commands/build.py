@@ -10,9 +10,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from obbcli.cli.boundary import UsageError, as_error, report, writing
-from obbcli.cli.inputs import STDIN, keep_inputs, measured, read_shape
+from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options.option import Command, common_options, gathered, option
-from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option, weld_option
+from obbcli.cli.options.placement import (
+    UnitOptions,
+    sag_option,
+    scale_option,
+    unit_option,
+    weld_option,
+)
 from obbcli.cli.options.words import PathName, Whole, byte_count
 from obbcli.cli.output import emit, remark, require_free
 from obbcli.cli.progress import bar
@@ -43,6 +49,7 @@ class TreeOptions(NamedTuple):
     unit: str | None
     scale: float | None
     weld: float | None
+    sag: float | None
 
     @property
     def build(self) -> BuildOptions:
@@ -104,6 +111,7 @@ build_options = gathered(
         unit_option,
         scale_option("--scale", "the mesh's"),
         weld_option,
+        sag_option,
     ),
 )
 
@@ -208,9 +216,10 @@ def _build(name: str, target: Path, how: TreeOptions, common: CommonOptions) -> 
 def _mesh(name: str, how: TreeOptions) -> Mesh:
     from obbcli.mesh import Mesh
 
-    shape, _ = read_shape(name, verify=True)
+    lengths = UnitOptions(how.unit, how.scale, None, how.weld, how.sag).of_a()
+    shape, _ = read_shape(name, verify=True, sag=how.sag)
     if not isinstance(shape, Mesh):
         raise MeshError(name, "is a tree file already", "build from the mesh it was made of")
-    made = measured(shape, UnitOptions(how.unit, how.scale, None, how.weld).of_a(), name)
+    made = shape if lengths is None else lengths.measured(shape, name)
     assert isinstance(made, Mesh)
     return made

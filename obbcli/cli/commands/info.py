@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from obbcli.cli.boundary import UsageError
-from obbcli.cli.inputs import keep_inputs, measured, read_piped, read_shape
+from obbcli.cli.inputs import keep_inputs, read_piped, read_shape
 from obbcli.cli.options.option import Command, common_options, option, verify_option
-from obbcli.cli.options.placement import UnitOptions, scale_option, unit_option, weld_option
+from obbcli.cli.options.placement import (
+    UnitOptions,
+    sag_option,
+    scale_option,
+    unit_option,
+    weld_option,
+)
 from obbcli.cli.options.words import PathName
 from obbcli.cli.output import emit
 from obbcli.errors import MeshError
@@ -40,6 +46,7 @@ Examples:
 @unit_option
 @scale_option("--scale", "the mesh's")
 @weld_option
+@sag_option
 @verify_option
 @common_options()
 def command(file: str, common: CommonOptions, **flags: Any) -> int:
@@ -56,18 +63,19 @@ def command(file: str, common: CommonOptions, **flags: Any) -> int:
     from obbcli.tree.tree import ObbTree
 
     keep_inputs(common.output, (file,))
-    lengths = UnitOptions(flags["unit"], flags["scale"], None, flags["weld"]).of_a()
+    sag = flags["sag"]
+    lengths = UnitOptions(flags["unit"], flags["scale"], None, flags["weld"], sag).of_a()
     check = flags["check"]
     if flags["parts"]:
         for name in ("unit", "scale", "weld"):
             if flags[name] is not None:
                 fault = "changes one mesh, and --parts lists the parts as they are"
                 raise UsageError(f"--{name}", fault, "leave out one of the two")
-        return _parts(file, common, check=check)
+        return _parts(file, sag, common, check=check)
     start = time.perf_counter()
     stamp = stamp_of(file_of(file))
-    shape, sha256 = read_shape(file, verify=not flags["no_verify"])
-    shape = measured(shape, lengths, file)
+    shape, sha256 = read_shape(file, verify=not flags["no_verify"], sag=sag)
+    shape = shape if lengths is None else lengths.measured(shape, file)
     if check:
         (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
     sha256 = sha256 or file_sha256(file_of(file), stamp)
@@ -77,20 +85,20 @@ def command(file: str, common: CommonOptions, **flags: Any) -> int:
     return 0
 
 
-def _parts(file: str, common: CommonOptions, *, check: bool) -> int:
+def _parts(file: str, sag: float | None, common: CommonOptions, *, check: bool) -> int:
     """List the parts of a mesh file."""
     from obbcli.report.parts import parts_bare, parts_record, parts_tables
 
     if check:
         raise UsageError("--parts", "lists parts, and --check proves a tree", "leave out one")
     start = time.perf_counter()
-    record = parts_record(file, _assembly(file))
+    record = parts_record(file, _assembly(file, sag))
     record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
     emit(record, parts_tables, common, bare=parts_bare)
     return 0
 
 
-def _assembly(file: str) -> Assembly:
+def _assembly(file: str, sag: float | None) -> Assembly:
     """Return the parts of a mesh file, of what a pipe brings, or of standard input.
 
     Raises:
@@ -107,5 +115,5 @@ def _assembly(file: str) -> Assembly:
         remedy = "ask about the mesh that it was built of"
         raise MeshError(file, "is a tree file, which has no parts", remedy)
     if piped is None:
-        return load_parts(file)
-    return assembly_of(read_parts_bytes(piped.data, piped.suffix, name=piped.place))
+        return load_parts(file, sag=sag)
+    return assembly_of(read_parts_bytes(piped.data, piped.suffix, name=piped.place, sag=sag))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError, writing
-from obbcli.cli.inputs import STDIN, Lengths, keep_inputs, measured, read_shape
+from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import (
     Command,
@@ -164,24 +164,30 @@ def _read(
     asked: _TradeoffOptions,
 ) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
     """Return A and B, and what a record says of them."""
+    from obbcli.cli.lengths import shared_sag
     from obbcli.files import file_of, stamp_of
     from obbcli.report.record import Source, file_sha256
     from obbcli.report.rows import about_units
 
     if asked.a == asked.b == STDIN:
         raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    found: dict[tuple[str, Lengths | None], tuple[Mesh | ObbTree, Source]] = {}
-    keys = (asked.a, asked.units.of_a()), (asked.b, asked.units.of_b())
+    found: dict[object, tuple[Mesh | ObbTree, Source]] = {}
+    units = asked.units.of_a(), asked.units.of_b()
+    own_a, own_b = shared_sag((asked.a, asked.b), units)
+    keys = (asked.a, own_a), (asked.b, own_b)
     for key in keys:
-        name, lengths = key
+        name, own = key
         if key in found:
             continue
         stamp = stamp_of(file_of(name))
-        shape, digest = read_shape(name, verify=not asked.no_verify)
-        shape = measured(shape, lengths, name)
+        sag = None if own is None else own.sag
+        shape, digest = read_shape(name, verify=not asked.no_verify, sag=sag)
+        shape = shape if own is None else own.measured(shape, name)
         if digest is None and asked.common.json:
             digest = file_sha256(file_of(name), stamp)
-        found[key] = shape, Source.of(name, digest, shape)
+        source = Source.of(name, digest, shape)
+        more = () if own is None else own.remarks
+        found[key] = shape, source._replace(notes=(*source.notes, *more))
     (a, source_a), (b, source_b) = found[keys[0]], found[keys[1]]
     if asked.common.quiet:
         return (a, b), (source_a, source_b)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import click
 
 from obbcli.cli.boundary import UsageError, usage_errors
-from obbcli.cli.inputs import Lengths
 from obbcli.cli.options.option import gathered, option, vector
 from obbcli.cli.options.words import Finite
 
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
 
     from obbcli.accuracy import Accuracy
     from obbcli.cli.inputs import Input
+    from obbcli.cli.lengths import Lengths
     from obbcli.cli.options.accuracy import AccuracyOptions
     from obbcli.cli.options.option import Decorator
     from obbcli.motion.motion import Motion
@@ -69,6 +69,7 @@ class UnitOptions(NamedTuple):
     scale: float | None
     scale_b: float | None
     weld: float | None
+    sag: float | None
 
     def of_a(self) -> Lengths | None:
         """Return what becomes of A's coordinates; None where they are taken as they are."""
@@ -83,8 +84,14 @@ class UnitOptions(NamedTuple):
             raise UsageError(name, f"is {scale!r}", "use a number above 0")
         if self.weld is not None and not self.weld > 0:
             raise UsageError("--weld", f"is {self.weld!r}", "use a number above 0")
-        found = Lengths(self.unit, scale, self.weld)
-        return None if found == (None, None, None) else found
+        if self.sag is not None and not self.sag > 0:
+            raise UsageError("--sag", f"is {self.sag!r}", "use a number above 0")
+        found = self.unit, scale, self.weld, self.sag
+        if found == (None,) * len(found):
+            return None
+        from obbcli.cli.lengths import Lengths
+
+        return Lengths(*found)
 
 
 _UNITS = "Units"
@@ -113,10 +120,25 @@ weld_option = option(
     "[default: weld nothing].",
 )
 
+sag_option = option(
+    _UNITS,
+    "--sag",
+    type=Finite(),
+    metavar="D",
+    help="Cut exact surfaces (STEP) into triangles within D of them, in the file's unit "
+    "[default: 1e-3 of each product's size].",
+)
+
 unit_options = gathered(
     "units",
     UnitOptions,
-    (unit_option, scale_option("--scale", "A's"), scale_option("--scale-b", "B's"), weld_option),
+    (
+        unit_option,
+        scale_option("--scale", "A's"),
+        scale_option("--scale-b", "B's"),
+        weld_option,
+        sag_option,
+    ),
 )
 
 

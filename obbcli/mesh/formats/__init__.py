@@ -15,12 +15,14 @@ class Format(NamedTuple):
             NAME is the first word of the module.
         kind: meshio's module of the format; None where the reader is ours.
         parts: the module whose `parts_NAME` lists parts; None where the format knows none.
+        is_exact: whether files hold exact surfaces, which are cut into triangles with a sag.
     """
 
     name: str
     module: str
     kind: str | None = None
     parts: str | None = None
+    is_exact: bool = False
 
     @property
     def key(self) -> str:
@@ -39,6 +41,7 @@ _NASTRAN = Format("Nastran, OptiStruct", "nastran.reader", parts="nastran.reader
 _MEDIT = Format("Medit", "medit")
 _THREEMF = Format("3MF", "threemf.reader", parts="threemf.reader")
 _COLLADA = Format("COLLADA", "collada.reader", parts="collada.reader")
+_STEP = Format("STEP", "step.reader", parts="step.reader", is_exact=True)
 _TECPLOT = Format("Tecplot", "tecplot.reader", parts="tecplot.reader")
 
 #: The one table of suffixes. Those of our own readers first, then what goes through meshio.
@@ -51,6 +54,9 @@ FORMATS = {
     ".gltf": _GLTF,
     ".3mf": _THREEMF,
     ".dae": _COLLADA,
+    ".step": _STEP,
+    ".stp": _STEP,
+    ".stpz": _STEP,
     ".vtk": _VTK,
     ".vtu": _VTK,
     ".vtp": _VTK,
@@ -78,6 +84,8 @@ FORMATS = {
 
 #: What stands after the suffix of a file that gzip has packed.
 PACKED_SUFFIX = ".gz"
+#: What files are called whose format is packed by gzip without saying so.
+PACKED_SUFFIXES = (PACKED_SUFFIX, ".stpz")
 
 
 def suffix_of(name: str) -> str:

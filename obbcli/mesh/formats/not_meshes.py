@@ -36,7 +36,6 @@ _SIGNATURES: tuple[tuple[int, bytes, str, str], ...] = (
     (8, b"WEBP", "a WebP picture", _EXPORT),
     (0, b"%PDF-", "a PDF document", _EXPORT),
     (0, b"%!PS", "a PostScript document", _EXPORT),
-    (0, b"ISO-10303-21", "a STEP file, which holds exact shapes", _EXPORT),
     (0, b"Kaydara FBX Binary", "an FBX scene", "export it as glTF"),
     (0, b"BLENDER-v", "a Blender document", "export it as glTF"),
     (0, b"BLENDER_v", "a Blender document", "export it as glTF"),
@@ -73,6 +72,11 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
     ),
     (rb"(<\?xml[^>]*>\s*)?(<!doctype\s+x3d[^>]*>\s*)?<X3D\b", "an X3D scene", _EXPORT),
     (rb"(#[^\n]*\n\s*)*newmtl\s", "a library of materials, which belongs to an OBJ file", _MESH),
+    (
+        rb"ISO-10303-21\s*;.{0,4000}?FILE_SCHEMA[\s(]*'IFC",
+        "an IFC model of a building",
+        "export it as glTF or OBJ",
+    ),
     (rb"AC10\d\d\x00", "a DWG drawing", _EXPORT),
     (
         rb"(//[^\n]*\s+)*begin\s+(modelpartdata|nodes|properties)\b",
@@ -90,7 +94,6 @@ _TEXTS: tuple[tuple[bytes, str, str], ...] = (
 #: Suffixes of formats whose files begin so; where one of them has a reader, the file is its own.
 _OWN = {
     "a zip archive": (".3mf",),
-    "a STEP file, which holds exact shapes": (".step", ".stp", ".p21"),
     "a USD scene": (".usd", ".usda", ".usdc"),
     "an X3D scene": (".x3d",),
 }

@@ -16,6 +16,8 @@ _BEGINNINGS: tuple[tuple[bytes, str, str], ...] = (
     (rb"ply[ \t]*[\r\n]", ".ply", "a PLY file"),
     (rb"gltf[\x01-\x03]\0\0\0", ".glb", "a GLB file"),
     (rb"(ST)?C?N?4?n?OFF\s*((#[^\n]*\n\s*)*\d|BINARY|\Z)", ".off", "an OFF file"),
+    # Models of buildings are files of STEP, too, and no meshes.
+    (rb"ISO-10303-21\s*;(?!(?s:.){0,4000}?FILE_SCHEMA[\s(]*'IFC)", ".step", "a STEP file"),
     (rb"# vtk datafile", ".vtk", "a VTK file"),
     (rb"\$MeshFormat", ".msh", "a Gmsh file"),
     (

@@ -35,13 +35,15 @@ class FileParts(NamedTuple):
     sha256: str | None
 
 
-def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool = True) -> Mesh:
+def load_selection(
+    path: str | os.PathLike[str], pattern: str, *, hashed: bool = True, sag: float | None = None
+) -> Mesh:
     """Return the parts of a file that a pattern selects as one mesh; its `parts` tell their rows.
 
     Raises:
         MeshError: as `load_mesh`.
     """
-    contents = read_parts(path, pattern, hashed=hashed)
+    contents = read_parts(path, pattern, hashed=hashed, sag=sag)
     source = contents.source
     arrays, rows, first = [], [], 0
     for part in contents.parts:
@@ -61,7 +63,11 @@ def load_selection(path: str | os.PathLike[str], pattern: str, *, hashed: bool =
 
 
 def read_parts(
-    path: str | os.PathLike[str], pattern: str | None = None, *, hashed: bool = True
+    path: str | os.PathLike[str],
+    pattern: str | None = None,
+    *,
+    hashed: bool = True,
+    sag: float | None = None,
 ) -> FileParts:
     """Return the parts of a file in its order, not yet decoded where its format allows that.
 
@@ -71,6 +77,7 @@ def read_parts(
         path: the file.
         pattern: which parts; None: all.
         hashed: whether the file's SHA-256 is found.
+        sag: how far triangles may be from exact surfaces; None: the default.
 
     Raises:
         MeshError: as `load_mesh`, or no part matches.
@@ -78,16 +85,18 @@ def read_parts(
     path = Path(path)
     check_file(path)
     suffix = suffix_of(path.name)
-    return _parts_of(content_of(path, suffix), suffix, pattern, hashed=hashed)
+    return _parts_of(content_of(path, suffix, sag), suffix, pattern, hashed=hashed)
 
 
-def read_parts_bytes(data: bytes, suffix: str | None = None, *, name: str) -> FileParts:
+def read_parts_bytes(
+    data: bytes, suffix: str | None = None, *, name: str, sag: float | None = None
+) -> FileParts:
     """Return the parts in `data`, as `read_parts` does of a file; `name` is the place named.
 
     Raises:
         MeshError: as `load_mesh_bytes`.
     """
-    source, known = source_of_bytes(data, suffix, name)
+    source, known = source_of_bytes(data, suffix, name, sag)
     return _parts_of(source, known, None, hashed=True)
 
 

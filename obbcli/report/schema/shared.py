@@ -92,9 +92,10 @@ DEFINITIONS: dict[str, Schema] = {
             "triangle_count": told(or_null(COUNT), "null where there is none to count"),
             "notes": told(list_of(TEXT), "what of it was taken with a change, a sentence each"),
             "unit": told(TEXT, "the length of 1; left out where neither file nor options state it"),
+            "sag": told(AMOUNT, "how far triangles are from exact surfaces; else left out"),
             "parts": told(list_of(_PART_ROWS), "those that FILE#PATTERN selected; else left out"),
         },
-        optional=("notes", "unit", "parts"),  # documents written before notes came have none
+        optional=("notes", "unit", "sag", "parts"),  # documents written before notes came have none
         description="A file that was asked about.",
     ),
     "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),

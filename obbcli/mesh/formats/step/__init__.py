@@ -1,0 +1,1 @@
+"""STEP: exact surfaces, cut into triangles by Open CASCADE in a process of its own."""
