@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 _UTF8_MARK = b"\xef\xbb\xbf"
 #: Of a word that is none of those expected, so much is shown; no whole number is longer.
 _SHOWN = 40
+_DIGITS_AND_BLANK = b"0123456789 "
+#: No number of eight bytes is taken for one that is larger.
+_SAFE = 1 << 62
 
 
 def strip_mark(data: bytes) -> bytes:
@@ -97,6 +100,26 @@ def uniform_rows(rows: list[list[bytes]], width: int) -> list[bytes] | None:
     return list(chain.from_iterable(rows))
 
 
+def counted_rows(
+    rows: list[list[bytes]],
+) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+    """Return the numbers of rows that begin with how many follow, end to end, and these counts.
+
+    None where a row has fewer or more, or a word that is no whole number.
+    """
+    widths = np.fromiter(map(len, rows), np.int64, len(rows))
+    values = all_whole(list(chain.from_iterable(rows)))
+    if values is None or not len(values):
+        return None
+    starts = np.cumsum(widths) - widths
+    counts = values[starts]
+    if (counts != widths - 1).any():
+        return None
+    is_count = np.zeros(len(values), bool)
+    is_count[starts] = True
+    return values[~is_count], counts
+
+
 def all_numbers(words: list[bytes]) -> NDArray[np.float64] | None:
     """Return all words as finite numbers, or None where one is not: its reader then says which.
 
@@ -110,7 +133,16 @@ def all_numbers(words: list[bytes]) -> NDArray[np.float64] | None:
 
 
 def all_whole(words: list[bytes]) -> NDArray[np.int64] | None:
-    """Return all words as whole numbers, or None where one is not; see `all_numbers`."""
+    """Return all words, as `split` parts them, as whole numbers, or None where one is none.
+
+    See `all_numbers` about underscores.
+    """
+    text = b" ".join(words)
+    if words and not text.translate(None, _DIGITS_AND_BLANK):
+        # Three times as fast as word by word; numbers beyond the range become its end.
+        values = np.fromstring(text, np.int64, sep=" ")
+        if len(values) == len(words) and values.max() < _SAFE:
+            return values
     try:
         return np.array(list(map(int, words)), dtype=np.int64)
     except (ValueError, OverflowError):

@@ -7,6 +7,7 @@ the file's; it takes index 0 and skips what it cannot read. meshio takes indices
 from __future__ import annotations
 
 import math
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,8 @@ from obbcli.mesh.formats.text import (
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from obbcli.errors import MeshError
     from obbcli.mesh.source import MeshArrays, Source
 
@@ -43,7 +46,7 @@ def read_obj(source: Source) -> MeshArrays:
 
 
 def _read_regular(source: Source) -> MeshArrays | None:
-    """Return the mesh where all vertices are alike and so are all faces, or None.
+    """Return the mesh where all vertices are alike, and faces have vertices before them, or None.
 
     Whole columns at a time, three times as fast; anything odd is left to `_read_statements`, which
     knows what to do or what to say.
@@ -57,24 +60,36 @@ def _read_regular(source: Source) -> MeshArrays | None:
     rest = [line for line in lines if not line.startswith((b"v ", b"f ", b"#"))]
     if not vertices or not faces or not PASSED_OVER.issuperset(filter(None, map(_keyword, rest))):
         return None
-    width, count = len(vertices[0].split()), len(faces[0].split()) - 1
+    width = len(vertices[0].split())
     words = uniform_words(vertices, width)
-    names = uniform_words(faces, count + 1)
-    if words is None or names is None or width < 4 or count < 3:
+    names, counts = _corners_named(faces)
+    if words is None or names is None or width < 4 or counts.min() < 3:
         return None
     # Beside x, y and z there may be a weight or a colour, which must be numbers as well.
     columns = [all_numbers(words[axis::width]) for axis in range(1, width)]
-    del names[:: count + 1]
-    if any(b"/" in name for name in names[:count]):
-        names = [name.partition(b"/")[0] for name in names]
     corners = all_whole(names)
     if corners is None or corners.min() < 1 or corners.max() > len(vertices):
         return None
     if any(column is None for column in columns):
         return None
     points = np.stack([column for column in columns[:3] if column is not None], axis=1)
-    counts = np.full(len(faces), count)
     return points, triangulated(source, points, corners - 1, counts)
+
+
+def _corners_named(faces: list[bytes]) -> tuple[list[bytes] | None, NDArray[np.int64]]:
+    """Return the vertices that faces name, line by line, and how many each names.
+
+    No vertices where an underscore stands in a line, which Python takes within numbers.
+    """
+    widths = np.fromiter(map(len, map(bytes.split, faces)), np.int64, len(faces))
+    text = b" ".join(faces)
+    words = text.split()
+    is_corner = np.ones(len(words), np.uint8)
+    is_corner[np.cumsum(widths) - widths] = 0  # the letter that every line begins with
+    names = None if b"_" in text else list(compress(words, is_corner.tobytes()))
+    if names is not None and b"/" in text:
+        names = [name.partition(b"/")[0] for name in names]
+    return names, widths - 1
 
 
 def _keyword(line: bytes) -> bytes:

@@ -17,11 +17,10 @@ from obbcli.mesh.formats.off.header import Header, take_header
 from obbcli.mesh.formats.polygons import triangulated
 from obbcli.mesh.formats.text import (
     all_numbers,
-    all_whole,
     counted,
+    counted_rows,
     number,
     strip_mark,
-    uniform_rows,
     whole,
 )
 
@@ -104,13 +103,11 @@ def _faces(
     source: Source, rows: list[Row], vertex_count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners of all faces and how many each has; colours after them are left."""
-    table = None if b"_" in source.data else uniform_rows([words for _, words in rows], 4)
-    values = None if table is None else all_whole(table)
-    if values is not None and len(values):
-        square = values.reshape(-1, 4)
-        corners = square[:, 1:]
-        if (square[:, 0] == 3).all() and corners.min() >= 0 and corners.max() < vertex_count:
-            return corners.reshape(-1), square[:, 0]
+    found = None if b"_" in source.data else counted_rows([words for _, words in rows])
+    if found is not None:
+        corners, sizes = found
+        if sizes.min() >= 1 and corners.min() >= 0 and corners.max() < vertex_count:
+            return found
     flat: list[int] = []
     counts: list[int] = []
     for line, words in rows:

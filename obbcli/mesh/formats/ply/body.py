@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from obbcli.mesh.formats.text import all_numbers, all_whole, number, uniform_rows, whole
+from obbcli.mesh.formats.ply.short_lists import short_lists
+from obbcli.mesh.formats.text import all_numbers, counted_rows, number, uniform_rows, whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -66,7 +67,7 @@ def _ascii_element(source: Source, element: Element, rows: Rows) -> Columns:
 
 
 def _ascii_table(element: Element, words: list[list[bytes]]) -> Columns | None:
-    """Return the columns where all rows are alike (vertices, triangles), else None."""
+    """Return the columns where all rows are numbers alike, or one list each, else None."""
     properties = element.properties
     if not element.has_lists:
         table = uniform_rows(words, len(properties))
@@ -77,12 +78,8 @@ def _ascii_table(element: Element, words: list[list[bytes]]) -> Columns | None:
         return {p.name: (square[:, k], None) for k, p in enumerate(properties)}
     if len(properties) > 1 or properties[0].kind.kind == "f":
         return None
-    table = uniform_rows(words, 4)
-    corners = None if table is None else all_whole(table)
-    if corners is None or (corners[::4] != 3).any():
-        return None
-    rows = corners.reshape(-1, 4)
-    return {properties[0].name: (rows[:, 1:].reshape(-1), rows[:, 0])}
+    found = counted_rows(words)
+    return None if found is None else {properties[0].name: found}
 
 
 def _ascii_rows(source: Source, element: Element, rows: Rows) -> Columns:
@@ -191,11 +188,14 @@ def _binary_lists(source: Source, element: Element, position: int) -> tuple[Colu
     """Return the columns of an element with lists, and where it ends.
 
     Nearly always all rows are triangles: read as a table with the first row's lengths, which is
-    kept if every row has them, and else row by row.
+    kept if every row has them, and else row by row, those of one short list each in one go.
     """
     table, end = _binary_table(source, element, position)
     if table is not None:
         return table, end
+    found = short_lists(source.data, element, position)
+    if found is not None:
+        return {element.properties[0].name: found[:2]}, found[2]
     values_of: list[list[float]] = [[] for _ in element.properties]
     lengths_of: list[list[int]] = [[] for _ in element.properties]
     data = source.data
