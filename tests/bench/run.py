@@ -21,6 +21,7 @@ import bench_build
 import bench_distance
 import bench_first_contact
 import bench_fits
+import bench_formats
 import bench_hostile
 import bench_primitives
 import bench_scene
@@ -46,6 +47,7 @@ BENCHES = {
     "sweep": lambda options: bench_sweep.run(options.quick),
     "hostile": lambda options: bench_hostile.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
+    "formats": lambda options: bench_formats.run(options.quick),
 }
 TABLES = {
     "first contact": moving_tables.tables,

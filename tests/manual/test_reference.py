@@ -123,6 +123,14 @@ def test_format_table_is_the_loader_s() -> None:
     }
 
 
+def test_each_reader_of_our_own_has_its_reason() -> None:
+    shown = {row[0] for row in table_rows(section(topic("decisions"), "Who reads what"))}
+    # Those that a library reads, as far as it can.
+    through = {form.name for form in FORMATS.values() if form.kind or form.key in ("vtk", "step")}
+
+    assert shown == {form.name for form in FORMATS.values()} - through
+
+
 def test_exit_codes_are_those_of_the_command_line() -> None:
     shown = [int(row[0]) for row in table_rows(section(topic("options"), "Exit codes"))]
 
