@@ -17,6 +17,11 @@ Leaves = Literal["triangles", "boxes"]
 Method = Literal["certified", "sampled"]
 Integrator = Literal["exact", "euler", "rk4"]
 
+DEFAULT_DURATION = 1.0
+"""s; of a question where a body moves and goes on."""
+TIME_TOLERANCE = 1e-9
+"""Of the duration: the width asked of a bracket where the caller asks for none."""
+
 
 class Aspect(NamedTuple):
     """What a field of `Accuracy` is, beside its name and default.

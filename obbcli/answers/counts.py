@@ -56,9 +56,10 @@ class QueryStats(NamedTuple):
         nodes_built_b: the same for B.
         nodes_possible_a: nodes that A's tree can have.
         nodes_possible_b: the same for B.
-        seconds: s of wall time by stage. The clock of `collide` and `first_contact` about bodies at
-            rest, on trees of which all is there, starts after the first 32 pops, some microseconds,
-            as two looks at it would take a third of a short question: one that ends before tells 0.
+        seconds: s of wall time by stage. Where `collide` or `first_contact` is asked about two
+            bodies whose trees are all there, and nothing else, the clock starts after the first 32
+            pops, some microseconds: two looks at it would take a third of a short question. One
+            that ends before tells 0.
     """
 
     box_tests: int

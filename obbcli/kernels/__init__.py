@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copyreg
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from obbcli.kernels._core import (
     AtRestAnswer,
@@ -96,19 +96,42 @@ def made_by_kernels(cls: _Class) -> _Class:
     return cls
 
 
-def asked_at_rest_first(limits: Limits) -> Callable[[_Function], _Function]:
-    """Let a call with two bodies at rest, and nothing else, be answered by the kernels alone.
+class QuickQuestion(NamedTuple):
+    """What a function asks that is called with two bodies and nothing else.
 
-    Every other call goes to the function, as do those that cannot be answered. What is made looks
-    like the function: its name, documentation, signature and pickle are those of the function.
+    Attributes:
+        limits: how far it is pursued.
+        duration: s, where a body moves.
+        time_tolerance: s.
+        any_contact: whether any proof of contact will do, not of the first.
+        screw_of: returns how a body moves, given the body and its tree.
+        going_on: answers a question about moving bodies that the kernels began and did not find
+            apart, given the bodies and the kernels' queries: about t = 0, about the motion or None,
+            and whether all is answered.
+        told: returns the answer, given the bodies and what was found, an `AtRestAnswer`, of bodies
+            at rest or apart. None: what was found is the answer.
+    """
 
-    Args:
-        limits: of the function without further arguments.
+    limits: Limits
+    duration: float
+    time_tolerance: float
+    any_contact: bool
+    screw_of: Callable[..., Screw]
+    going_on: Callable[..., object]
+    told: Callable[..., object] | None = None
+
+
+def asked_by_kernels_first(question: QuickQuestion) -> Callable[[_Function], _Function]:
+    """Let a call with two bodies, and nothing else, be answered by the kernels.
+
+    That is so where bodies that have their trees rest or have constant velocities. Every other call
+    goes to the function, as do those that the kernels refuse. What is made looks like the function:
+    its name, documentation, signature and pickle are those of the function.
     """
     from functools import update_wrapper
 
     def quick(function: _Function) -> _Function:
-        return cast("_Function", update_wrapper(QuickCall(function, limits), function))
+        return cast("_Function", update_wrapper(QuickCall(function, *question), function))
 
     return quick
 
@@ -128,6 +151,7 @@ __all__ = [
     "PlacedBody",
     "Pose",
     "QuickCall",
+    "QuickQuestion",
     "Screw",
     "Split",
     "StaticQuery",
@@ -135,7 +159,7 @@ __all__ = [
     "TreeBuilder",
     "TreeError",
     "ask_pairs",
-    "asked_at_rest_first",
+    "asked_by_kernels_first",
     "block_checksums",
     "collide",
     "convex_hull",

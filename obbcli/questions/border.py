@@ -6,14 +6,14 @@ import operator
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
+from obbcli.accuracy import DEFAULT_DURATION, TIME_TOLERANCE, Accuracy
 from obbcli.answers.counts import QueryStats
 from obbcli.errors import MotionError, TreeFileError
 from obbcli.motion.body import pivot_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
-    from obbcli.accuracy import Accuracy
     from obbcli.errors import ObbError
     from obbcli.motion.body import Body
     from obbcli.questions.pair_question import PairQuestion, Trees
@@ -42,6 +42,27 @@ def limits_of(accuracy: Accuracy) -> kernels.Limits:
     if accuracy.timeout is not None:
         limits.seconds = accuracy.timeout
     return limits
+
+
+def quick_question(
+    going_on: Callable[..., object],
+    told: Callable[..., object] | None = None,
+    *,
+    any_contact: bool = False,
+) -> kernels.QuickQuestion:
+    """Return what is asked of two bodies, as they are, without further arguments.
+
+    Args:
+        going_on: as `kernels.QuickQuestion` has it.
+        told: likewise.
+        any_contact: likewise.
+    """
+    exact = Accuracy()
+    tolerance = TIME_TOLERANCE * DEFAULT_DURATION
+    limits = limits_of(exact)
+    return kernels.QuickQuestion(
+        limits, DEFAULT_DURATION, tolerance, any_contact, screw_of, going_on, told
+    )
 
 
 def placed_of(body: Body, tree: ObbTree) -> kernels.Placed:

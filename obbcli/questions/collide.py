@@ -5,17 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.accuracy import Accuracy
 from obbcli.answers.collision import Collision
-from obbcli.questions.border import limits_of, placed_of, refused
+from obbcli.questions.border import limits_of, placed_of, quick_question, refused
 from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
     from obbcli.motion.body import Body, Shape
+    from obbcli.questions.first_contact import Queries
 
 
-@kernels.asked_at_rest_first(limits_of(Accuracy()))
+def _going_on(a: Body, b: Body, queries: Queries) -> Collision:
+    from obbcli.questions.first_contact import going_on
+
+    return collision_of(going_on(a, b, queries, any_contact=True))
+
+
+@kernels.asked_by_kernels_first(quick_question(_going_on, any_contact=True))
 def collide(
     a: Body | Shape,
     b: Body | Shape,

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli import kernels, primitives
-from obbcli.accuracy import Accuracy
 from obbcli.answers.contact import Contact, FirstContact
 from obbcli.answers.status import Status
 from obbcli.answers.words import EVIDENCES, FEATURES
-from obbcli.questions.border import limits_of, refused
+from obbcli.motion.body import as_body
 from obbcli.questions.budget import POPS_A_SLICE
 from obbcli.questions.pair_question import trees_of
 
@@ -18,10 +17,9 @@ if TYPE_CHECKING:
 
     from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Vector
-    from obbcli.motion.body import Body
+    from obbcli.motion.body import Body, Shape
     from obbcli.questions.pair_question import Trees
 
-_EXACT_LIMITS = limits_of(Accuracy())
 _SEPARATED = Contact(status=Status.SEPARATED)
 
 
@@ -117,23 +115,18 @@ def _vector(values: Iterable[float]) -> Vector:
     return x, y, z
 
 
-def answer_at_rest(
-    bodies: tuple[Body, Body], here: kernels.Placed, there: kernels.Placed
-) -> FirstContact:
-    """Return what `Query` says of bodies at rest, in a fraction of the calls.
+def answer_told(a: Body | Shape, b: Body | Shape, found: Collision) -> FirstContact:
+    """Return what `Query` says of bodies that the kernels found apart, or at rest.
 
-    Raises:
-        MotionError: posed coordinates leave the range of double.
-        TreeFileError: a tree file is damaged.
+    Args:
+        a: a body, or a tree.
+        b: as `a`.
+        found: what `collide` says of them.
     """
-    trees = trees_of(bodies)
-    try:
-        found: Collision = kernels.collide(here, there, _EXACT_LIMITS, 0.0)
-    except (ValueError, kernels.TreeError) as fault:
-        raise refused(trees, fault) from fault
     contact = _SEPARATED
     if found.witness is not None:
-        contact = contact_at_start(bodies, trees, *found.witness)
+        bodies = as_body(a), as_body(b)
+        contact = contact_at_start(bodies, trees_of(bodies), *found.witness)
     elif found.status is Status.UNRESOLVED:
         contact = unresolved(0.0)
     return FirstContact.of(contact, found.stats)

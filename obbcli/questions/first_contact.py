@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Protocol
 from obbcli import kernels
 from obbcli.answers.contact import FirstContact
 from obbcli.answers.counts import Counts
-from obbcli.motion.body import as_body
-from obbcli.questions.border import damaged, static_query, stats_of
+from obbcli.questions.border import damaged, quick_question, static_query, stats_of
 from obbcli.questions.budget import Budget
 from obbcli.questions.containment import Containment
-from obbcli.questions.describe import answer_at_rest
+from obbcli.questions.describe import answer_told
 from obbcli.questions.legs.sampled import SampledQuery
 from obbcli.questions.legs.through_poses import PathQuery, legs_of
 from obbcli.questions.pair_question import PairQuestion
@@ -26,6 +25,8 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import Contact
     from obbcli.motion.body import Body, Shape
+
+    Queries = tuple[kernels.StaticQuery, kernels.ContactQuery | None, bool]
 
 
 class _Search(Protocol):
@@ -264,6 +265,29 @@ class Query:
         return self._pair.with_parts(answer, (answer.triangle_a, answer.triangle_b))
 
 
+def going_on(a: Body, b: Body, queries: Queries, *, any_contact: bool = False) -> FirstContact:
+    """Return the answer to a question about two bodies, as they are, that the kernels have begun.
+
+    Args:
+        a: of constant velocities, with its tree.
+        b: as `a`.
+        queries: those of the kernels: about t = 0, about the motion or None, and whether all is
+            answered.
+        any_contact: whether any proof of contact will do, not of the first.
+
+    Raises:
+        ObbError: as `Query`.
+    """
+    pair = PairQuestion.of(a, b)
+    at_start, moving, is_finished = queries
+    search = SteadyQuery.begun(
+        pair, at_start, moving, is_finished=is_finished, any_contact=any_contact
+    )
+    query = Query.begun(search, pair)
+    return query.advance(pair.accuracy.max_iterations - search.pops, pair.accuracy.timeout)
+
+
+@kernels.asked_by_kernels_first(quick_question(going_on, answer_told))
 def first_contact(
     a: Body | Shape,
     b: Body | Shape,
@@ -300,10 +324,6 @@ def first_contact(
         >>> answer.status.value, answer.time_bounds, answer.evidence
         ('contact', (0.5, 0.5), 'intersecting')
     """
-    if duration is None and accuracy is None and not solid:
-        here, there = getattr(a, "at_rest", None), getattr(b, "at_rest", None)
-        if here is not None and there is not None:
-            return answer_at_rest((as_body(a), as_body(b)), here, there)
     pair = PairQuestion.of(a, b, duration, accuracy)
     query = Query.about(pair, solid=solid)
     return query.advance(pair.accuracy.max_iterations, pair.accuracy.timeout)

@@ -8,7 +8,7 @@ from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
-from obbcli.accuracy import Accuracy
+from obbcli.accuracy import DEFAULT_DURATION, TIME_TOLERANCE, Accuracy
 from obbcli.errors import MeshError, MotionError
 from obbcli.files import is_large_file
 from obbcli.mesh import Mesh
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from obbcli.answers.distance import Distance
     from obbcli.motion.body import Shape
 
-# Of the duration: the width asked of a bracket where the caller asks for none.
-_TIME_TOLERANCE = 1e-9
 # Triangles. The root box of so many takes some milliseconds.
 _LARGE = 50_000
 _EXACT = Accuracy()
@@ -237,7 +235,7 @@ def duration_of(duration: float | None, bodies: Iterable[Body]) -> float:
         if not motions:
             return 0.0
         ends = (motion.ends_at for motion in motions)
-        return max((end for end in ends if end is not None), default=1.0)
+        return max((end for end in ends if end is not None), default=DEFAULT_DURATION)
     try:
         seconds = float(duration)
     except (TypeError, ValueError) as fault:
@@ -254,4 +252,4 @@ def duration_of(duration: float | None, bodies: Iterable[Body]) -> float:
 def time_tolerance(accuracy: Accuracy, duration: float) -> float:
     """Return the width asked of a bracket, s."""
     asked = accuracy.time_tolerance
-    return _TIME_TOLERANCE * duration if asked is None else asked
+    return TIME_TOLERANCE * duration if asked is None else asked

@@ -51,17 +51,19 @@ class SteadyQuery:
         moving: kernels.ContactQuery | None,
         *,
         is_finished: bool,
+        any_contact: bool = False,
     ) -> SteadyQuery:
-        """Return the question as the kernels have begun it, for the first contact.
+        """Return the question as the kernels have begun it.
 
         Args:
             pair: the question.
             at_start: the kernels' question about t = 0.
             moving: that about the motion; None where there is none yet.
             is_finished: whether the answer is complete.
+            any_contact: whether any proof of contact will do, not of the first.
         """
         query = cls.__new__(cls)
-        query._pair, query._any_contact = pair, False
+        query._pair, query._any_contact = pair, any_contact
         query.at_start, query._moving, query.is_finished = at_start, moving, is_finished
         return query
 

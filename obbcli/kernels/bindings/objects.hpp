@@ -5,6 +5,8 @@
 
 #include "bindings/module.hpp"
 
+#include "in_motion/contact_query.hpp"
+
 // ---- Poses
 
 struct PoseObject {
@@ -24,8 +26,9 @@ struct PlacedObject {
     PyObject* shape;  // of bodies, as the next two
     PyObject* pose;
     PyObject* motion;
-    Placed here; // no tree where the shape is none yet
-    bool rests;  // and has no labels that a question looks at
+    Placed here;    // no tree where the shape is none yet
+    bool rests;     // and has no labels that a question looks at
+    bool is_steady; // its velocities are constant, and the same of labels
 };
 
 [[nodiscard]] PlacedObject* as_placed(PyObject* object);
@@ -37,7 +40,7 @@ struct PlacedRef {
     const Placed& operator*() const { return *placed; }
 };
 
-// ---- Answers of bodies at rest
+// ---- Answers that need no more than numbers
 
 struct AtRestFound {
     bool is_complete = true, is_by_boxes = false, has_witness = false;
@@ -47,12 +50,31 @@ struct AtRestFound {
     std::array<std::uint64_t, 8> counts{}; // as `QueryStats` has them
 };
 
+inline std::array<std::uint64_t, 8> all_counts(const obb::WalkCounts& counts, const Tree& a,
+                                               const Tree& b) {
+    return {counts.box_tests,      counts.triangle_tests, counts.exact_triangle_tests,
+            counts.pops,           a.node_count(),        b.node_count(),
+            a.possible_node_count, b.possible_node_count};
+}
+
 // An answer of the class that was made known; a new reference, null with an error set.
 [[nodiscard]] PyObject* answer_of(const AtRestFound& found);
 
 // What the kernels say of two placed trees. Throws std::domain_error, obb::TreeError, and what a
 // signal's handler raised.
 [[nodiscard]] AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& limits);
+
+// The first few pops of a question about bodies of constant velocities.
+struct MovingAsked {
+    bool is_apart; // for the whole duration, proven
+    AtRestFound found;
+    nb::tuple queries; // elsewhere: at t = 0, of the motion or None, and whether all is answered
+};
+
+// Throws as `ask_at_rest`.
+[[nodiscard]] MovingAsked ask_moving(const Placed& a, const obb::Screw& screw_a, const Placed& b,
+                                     const obb::Screw& screw_b,
+                                     const obb::ContactQueryOptions& options);
 
 // ---- How functions bound by nanobind take them
 

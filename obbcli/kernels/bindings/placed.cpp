@@ -79,7 +79,9 @@ void set_body(PlacedObject& self, PyObject* shape, PyObject* pose, PyObject* mot
     hold(self.pose, pose);
     hold(self.motion, motion);
     place(self, tree.ptr(), as_pose(pose)->pose);
-    self.rests = rests && !(self.here.tree != nullptr && self.here.tree->is_labelled);
+    const bool is_told = self.here.tree == nullptr || !self.here.tree->is_labelled;
+    self.rests = rests && is_told;
+    self.is_steady = is_told && Py_TYPE(motion) == Py_TYPE(at_rest);
 }
 
 // A tree at a pose, moving with constant velocities if at all. Other arguments are looked at by the

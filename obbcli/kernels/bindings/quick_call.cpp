@@ -1,5 +1,6 @@
-// `QuickCall`: a Python function, and in front of it the question about two bodies at rest, asked
-// in C++ alone: a Python function called for it would take as long as the question.
+// `QuickCall`: a Python function, and in front of it the question about two bodies as they are, at
+// rest or of constant velocities, asked in C++ alone: a Python function called for it would take as
+// long as the question.
 #include "bindings/objects.hpp"
 
 #include <cstddef>
@@ -20,8 +21,16 @@ struct CallObject {
     PyObject* dict; // what functools.wraps() sets
     PyObject* weak_references;
     PyObject* function;
-    obb::Limits limits; // of a question without more arguments
+    PyObject* screw_of; // of a body and its tree: how it moves, as the kernels see it
+    PyObject* going_on; // answers a question about moving bodies that is not over yet
+    PyObject* told;     // makes the answer of bodies and what was found; None: that is the answer
+    obb::ContactQueryOptions options; // of a question without more arguments
 };
+
+using CallField = PyObject* CallObject::*;
+constexpr std::array<CallField, 5> kHeld{&CallObject::dict, &CallObject::function,
+                                         &CallObject::screw_of, &CallObject::going_on,
+                                         &CallObject::told};
 
 PyObject* at_rest_name = nullptr;
 
@@ -44,15 +53,57 @@ PlacedObject* resting(PyObject* object, nb::object& owner) {
     return placed != nullptr && placed->here.tree != nullptr && placed->rests ? placed : nullptr;
 }
 
+// A body with constant velocities whose tree is there; else null.
+PlacedObject* steady(PyObject* object) {
+    PlacedObject* placed = as_placed(object);
+    return placed != nullptr && placed->shape != nullptr && placed->here.tree != nullptr &&
+                   placed->is_steady
+               ? placed
+               : nullptr;
+}
+
+nb::object called(PyObject* function, std::initializer_list<PyObject*> args) {
+    nb::object result =
+        nb::steal(PyObject_Vectorcall(function, std::data(args), args.size(), nullptr));
+    if (!result.is_valid()) {
+        throw nb::python_error();
+    }
+    return result;
+}
+
+nb::object answer_told(const CallObject& self, PyObject* a, PyObject* b, const AtRestFound& found) {
+    nb::object answer = nb::steal(answer_of(found));
+    if (!answer.is_valid()) {
+        throw nb::python_error();
+    }
+    return self.told == Py_None ? answer : called(self.told, {a, b, answer.ptr()});
+}
+
+nb::object moving_answer(const CallObject& self, PlacedObject& a, PlacedObject& b) {
+    auto* const first = reinterpret_cast<PyObject*>(&a);
+    auto* const second = reinterpret_cast<PyObject*>(&b);
+    const nb::object screw_a = called(self.screw_of, {first, a.shape});
+    const nb::object screw_b = called(self.screw_of, {second, b.shape});
+    const MovingAsked asked = ask_moving(a.here, nb::cast<const obb::Screw&>(screw_a), b.here,
+                                         nb::cast<const obb::Screw&>(screw_b), self.options);
+    if (asked.is_apart) {
+        return answer_told(self, first, second, asked.found);
+    }
+    return called(self.going_on, {first, second, asked.queries.ptr()});
+}
+
 // Null without an error where the function is to answer, which says too what is wrong.
 PyObject* quick_answer(const CallObject& self, PyObject* first, PyObject* second) try {
     nb::object owner_a, owner_b;
     const PlacedObject* a = resting(first, owner_a);
     const PlacedObject* b = a == nullptr ? nullptr : resting(second, owner_b);
-    if (b == nullptr) {
-        return nullptr;
+    if (b != nullptr) {
+        const AtRestFound found = ask_at_rest(a->here, b->here, self.options.limits);
+        return answer_told(self, first, second, found).release().ptr();
     }
-    return answer_of(ask_at_rest(a->here, b->here, self.limits));
+    PlacedObject* moving = steady(first);
+    PlacedObject* other = moving == nullptr ? nullptr : steady(second);
+    return other == nullptr ? nullptr : moving_answer(self, *moving, *other).release().ptr();
 } catch (nb::python_error& error) {
     error.restore();
     return nullptr;
@@ -71,33 +122,46 @@ PyObject* call(PyObject* self, PyObject* const* args, std::size_t flags, PyObjec
 }
 
 PyObject* new_call(PyTypeObject* type, PyObject* args, PyObject*) {
-    PyObject *function = nullptr, *limits = nullptr;
-    if (PyArg_ParseTuple(args, "OO", &function, &limits) == 0) {
+    PyObject *function = nullptr, *limits = nullptr, *screw = nullptr, *going_on = nullptr,
+             *told = nullptr;
+    double duration = 0, tolerance = 0;
+    int any_contact = 0;
+    if (PyArg_ParseTuple(args, "OOddpOOO", &function, &limits, &duration, &tolerance, &any_contact,
+                         &screw, &going_on, &told) == 0) {
         return nullptr;
     }
     if (!nb::isinstance<obb::Limits>(nb::handle(limits))) {
-        PyErr_SetString(PyExc_TypeError, "a quick call takes a function and limits");
+        PyErr_SetString(PyExc_TypeError, "a quick call takes limits of the kernels");
         return nullptr;
     }
     PyObject* self = PyType_GenericAlloc(type, 0); // which clears it
     if (self != nullptr) {
         cast(self)->call = &call;
         hold(cast(self)->function, function);
-        new (&cast(self)->limits) obb::Limits(*nb::inst_ptr<obb::Limits>(limits));
+        hold(cast(self)->screw_of, screw);
+        hold(cast(self)->going_on, going_on);
+        hold(cast(self)->told, told);
+        const obb::Limits& given = *nb::inst_ptr<obb::Limits>(limits);
+        new (&cast(self)->options) obb::ContactQueryOptions{.duration = duration,
+                                                            .time_tolerance = tolerance,
+                                                            .limits = given,
+                                                            .any_contact = any_contact != 0};
     }
     return self;
 }
 
 int visit_call(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
-    Py_VISIT(cast(self)->dict);
-    Py_VISIT(cast(self)->function);
+    for (const CallField field : kHeld) {
+        Py_VISIT(cast(self)->*field);
+    }
     return 0;
 }
 
 int clear_call(PyObject* self) {
-    Py_CLEAR(cast(self)->dict);
-    Py_CLEAR(cast(self)->function);
+    for (const CallField field : kHeld) {
+        Py_CLEAR(cast(self)->*field);
+    }
     return 0;
 }
 

@@ -140,7 +140,8 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
 
 AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& limits) {
     AtRestFound found;
-    obb::WalkCounts counts{.box_tests = 1};
+    obb::WalkCounts counts;
+    counts.box_tests = 1; // that of the roots
     if (!obb::are_apart(a.root, b.root)) {
         obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
         found.is_complete = run(query, brief_pops(*a.tree, *b.tree), limits, found.seconds);
@@ -153,14 +154,7 @@ AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& lim
         }
         counts = query.counts();
     }
-    found.counts = {counts.box_tests,
-                    counts.triangle_tests,
-                    counts.exact_triangle_tests,
-                    counts.pops,
-                    a.tree->node_count(),
-                    b.tree->node_count(),
-                    a.tree->possible_node_count,
-                    b.tree->possible_node_count};
+    found.counts = all_counts(counts, *a.tree, *b.tree);
     return found;
 }
 

@@ -136,6 +136,22 @@ Asked ask_pairs(const std::vector<Bodies>& pairs, const obb::Limits& limits, dou
 
 } // namespace
 
+MovingAsked ask_moving(const Placed& a, const obb::Screw& screw_a, const Placed& b,
+                       const obb::Screw& screw_b, const obb::ContactQueryOptions& options) {
+    MovingAsked asked;
+    obb::SteadyQuery query(moving(a, screw_a), moving(b, screw_b), options);
+    const bool is_finished =
+        query.advance(std::min(brief_pops(*a.tree, *b.tree), options.limits.max_pops));
+    asked.is_apart = is_finished && !query.is_contact() && !query.has_given_up();
+    if (asked.is_apart) {
+        asked.found.counts = all_counts(query.counts(), *a.tree, *b.tree);
+    } else {
+        const nb::object queries = as_python(query, a, b);
+        asked.queries = nb::make_tuple(queries[0], queries[1], is_finished);
+    }
+    return asked;
+}
+
 void bind_steady_pairs(nb::module_& m) {
     nb::class_<HandedOver, obb::ContactQuery>(m, "ContactQueryHandedOver");
     // What became of each pair, the queries of those of which more is to be known, and what the
