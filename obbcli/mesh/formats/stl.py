@@ -34,6 +34,8 @@ _FACET: tuple[bytes | None, ...] = (
     *(b"vertex", None, None, None) * 3,
     *(b"endloop", b"endfacet"),
 )
+#: Bytes of text whose words are held at a time.
+_BLOCK = 1 << 22
 #: Where in a facet the corners' numbers stand; the normal's are never used and may be anything.
 _COORDINATES = [k for k, word in enumerate(_FACET) if word is None and k > 4]
 #: Begins with letters, which `re` looks for many times as fast as for line starts.
@@ -172,7 +174,28 @@ def _read_regular(text: bytes) -> NDArray[np.float64] | None:
     body = _without_titles(text.lower())
     if body is None or b"_" in body:
         return None
-    words = body.split()
+    found = [np.zeros((0, 3))]
+    for block in _blocks(body):
+        corners = _regular_corners(block.split())
+        if corners is None:
+            return None
+        found.append(corners)
+    return np.concatenate(found) if len(found) > 1 else None
+
+
+def _blocks(body: bytes) -> Iterator[bytes]:
+    """Yield a text in blocks that end where facets do: words take ten times the text's memory."""
+    start = 0
+    while start < len(body):
+        end = body.find(b"endfacet", start + _BLOCK)
+        end = len(body) if end < 0 or body[end + 8 : end + 9].strip() else end + 8
+        block, start = body[start:end], end
+        if block.strip():
+            yield block
+
+
+def _regular_corners(words: list[bytes]) -> NDArray[np.float64] | None:
+    """Return the corners (3 F, 3) where words repeat exactly as in `_FACET`, or None."""
     count = len(words) // len(_FACET)
     if count == 0 or count * len(_FACET) != len(words):
         return None

@@ -7,8 +7,9 @@ the file's; it takes index 0 and skips what it cannot read. meshio takes indices
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import compress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,10 +25,16 @@ from obbcli.mesh.formats.text import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from numpy.typing import NDArray
 
     from obbcli.errors import MeshError
     from obbcli.mesh.source import MeshArrays, Source
+
+
+#: Lines whose words are held at a time.
+_LINES = 1 << 16
 
 
 def read_obj(source: Source) -> MeshArrays:
@@ -60,36 +67,56 @@ def _read_regular(source: Source) -> MeshArrays | None:
     rest = [line for line in lines if not line.startswith((b"v ", b"f ", b"#"))]
     if not vertices or not faces or not PASSED_OVER.issuperset(filter(None, map(_keyword, rest))):
         return None
-    width = len(vertices[0].split())
-    words = uniform_words(vertices, width)
-    names, counts = _corners_named(faces)
-    if words is None or names is None or width < 4 or counts.min() < 3:
+    places = _by_blocks(partial(_places, width=len(vertices[0].split())), vertices)
+    named = None if places is None else _by_blocks(_corners_named, faces)
+    if places is None or named is None:
         return None
-    # Beside x, y and z there may be a weight or a colour, which must be numbers as well.
-    columns = [all_numbers(words[axis::width]) for axis in range(1, width)]
-    corners = all_whole(names)
-    if corners is None or corners.min() < 1 or corners.max() > len(vertices):
+    (points,), (corners, counts) = places, named
+    if counts.min() < 3 or corners.min() < 1 or corners.max() > len(vertices):
         return None
-    if any(column is None for column in columns):
-        return None
-    points = np.stack([column for column in columns[:3] if column is not None], axis=1)
     return points, triangulated(source, points, corners - 1, counts)
 
 
-def _corners_named(faces: list[bytes]) -> tuple[list[bytes] | None, NDArray[np.int64]]:
+def _by_blocks(
+    read: Callable[[list[bytes]], tuple[NDArray[Any], ...] | None], lines: list[bytes]
+) -> tuple[NDArray[Any], ...] | None:
+    """Return what is read of lines, some at a time, as their words take ten times the memory."""
+    found = []
+    for start in range(0, len(lines), _LINES):
+        arrays = read(lines[start : start + _LINES])
+        if arrays is None:
+            return None
+        found.append(arrays)
+    return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+
+def _places(vertices: list[bytes], width: int) -> tuple[NDArray[np.float64]] | None:
+    """Return the places (V, 3) of vertices whose lines have `width` words each, else None."""
+    words = uniform_words(vertices, width)
+    if words is None or width < 4:
+        return None
+    # Beside x, y and z there may be a weight or a colour, which must be numbers as well.
+    columns = [all_numbers(words[axis::width]) for axis in range(1, width)]
+    if any(column is None for column in columns):
+        return None
+    return (np.stack([column for column in columns[:3] if column is not None], axis=1),)
+
+
+def _corners_named(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
     """Return the vertices that faces name, line by line, and how many each names.
 
-    No vertices where an underscore stands in a line, which Python takes within numbers.
+    None where a name is none, or holds an underscore, which Python takes within numbers.
     """
     widths = np.fromiter(map(len, map(bytes.split, faces)), np.int64, len(faces))
     text = b" ".join(faces)
     words = text.split()
     is_corner = np.ones(len(words), np.uint8)
     is_corner[np.cumsum(widths) - widths] = 0  # the letter that every line begins with
-    names = None if b"_" in text else list(compress(words, is_corner.tobytes()))
-    if names is not None and b"/" in text:
-        names = [name.partition(b"/")[0] for name in names]
-    return names, widths - 1
+    names: Iterable[bytes] = compress(words, is_corner.tobytes())
+    if b"/" in text:
+        names = (name.partition(b"/")[0] for name in names)
+    corners = None if b"_" in text else all_whole(list(names))
+    return None if corners is None else (corners, widths - 1)
 
 
 def _keyword(line: bytes) -> bytes:
