@@ -136,7 +136,7 @@ sanitize: .build/sanitize/installed sanitize-fuzz .venv/test-tools
 # where Clang is at hand, else by a driver of our own, guided by GCC's coverage.
 FUZZ_SECONDS ?= 60
 FUZZ := tests/fuzz
-FUZZ_TARGETS := tree_file first_contact predicates
+FUZZ_TARGETS := tree_file first_contact predicates screw_images
 FUZZ_SOURCES := $(wildcard $(FUZZ)/*.cpp $(FUZZ)/*.hpp)
 FUZZ_FLAGS := -std=c++20 -O2 -g1 -ffp-contract=off -Wno-psabi -I$(KERNELS) -I$(FUZZ)
 SANITIZED := -fsanitize=address,undefined -fno-sanitize-recover=undefined
@@ -147,6 +147,7 @@ fuzz-smoke: .build/fuzz/plain .venv/test-tools
 	.build/fuzz/plain/tree_file -runs=2000 $(FUZZ)/corpus/tree_file
 	.build/fuzz/plain/first_contact -runs=2000 $(FUZZ)/corpus/first_contact
 	.build/fuzz/plain/predicates -runs=300 $(FUZZ)/corpus/predicates
+	.build/fuzz/plain/screw_images -runs=20000 $(FUZZ)/corpus/screw_images
 	$(BIN)/python $(FUZZ)/run.py --runs 200
 
 sanitize-fuzz: .build/fuzz/sanitized

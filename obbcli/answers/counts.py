@@ -1,4 +1,4 @@
-"""What a question cost: the four counters of a search, and with them trees and wall time."""
+"""What a question cost: the five counters of a search, and with them trees and wall time."""
 
 from __future__ import annotations
 
@@ -18,28 +18,31 @@ class Counts(NamedTuple):
         triangle_tests: pairs of triangles tested.
         exact_triangle_tests: those of them that exact arithmetic had to decide.
         pops: pairs taken from the queue or stack.
+        image_tests: pairs of images tested, on the common screw of two bodies; 0 where boxes and
+            steps were the way to the answer.
 
     Example:
         >>> Counts(5, 2, 0, 4) + Counts(1, 1, 1, 1) - Counts(pops=3)
-        Counts(box_tests=6, triangle_tests=3, exact_triangle_tests=1, pops=2)
+        Counts(box_tests=6, triangle_tests=3, exact_triangle_tests=1, pops=2, image_tests=0)
     """
 
     box_tests: int = 0
     triangle_tests: int = 0
     exact_triangle_tests: int = 0
     pops: int = 0
+    image_tests: int = 0
 
     def __add__(self, other: Counts) -> Counts:  # type: ignore[override]  # not joined, but added
         """Return what two searches cost together."""
-        a, b, c, d = self
-        p, q, r, s = other
-        return Counts(a + p, b + q, c + r, d + s)
+        a, b, c, d, e = self
+        p, q, r, s, t = other
+        return Counts(a + p, b + q, c + r, d + s, e + t)
 
     def __sub__(self, other: Counts) -> Counts:
         """Return what this cost beyond the other."""
-        a, b, c, d = self
-        p, q, r, s = other
-        return Counts(a - p, b - q, c - r, d - s)
+        a, b, c, d, e = self
+        p, q, r, s, t = other
+        return Counts(a - p, b - q, c - r, d - s, e - t)
 
 
 class QueryStats(NamedTuple):
@@ -51,6 +54,8 @@ class QueryStats(NamedTuple):
         triangle_tests: pairs of triangles tested.
         exact_triangle_tests: those of them that exact arithmetic had to decide.
         pops: pairs taken from the queue or stack.
+        image_tests: pairs of images tested, on the common screw of two bodies; 0 where boxes and
+            steps were the way to the answer.
         nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
             is asked for.
         nodes_built_b: the same for B.
@@ -66,6 +71,7 @@ class QueryStats(NamedTuple):
     triangle_tests: int
     exact_triangle_tests: int
     pops: int
+    image_tests: int
     nodes_built_a: int
     nodes_built_b: int
     nodes_possible_a: int
@@ -75,4 +81,4 @@ class QueryStats(NamedTuple):
     @property
     def counts(self) -> Counts:
         """Return what the search itself counted."""
-        return Counts(self.box_tests, self.triangle_tests, self.exact_triangle_tests, self.pops)
+        return Counts(*self[:5])

@@ -86,13 +86,13 @@ def static_query(pair: PairQuestion) -> kernels.StaticQuery:
 
 
 def stats_of(
-    trees: Trees, counts: tuple[int, int, int, int], seconds: Mapping[str, float]
+    trees: Trees, counts: tuple[int, int, int, int, int], seconds: Mapping[str, float]
 ) -> QueryStats:
     """Return what a question cost.
 
     Args:
         trees: those asked about.
-        counts: box tests, triangle tests, exact ones, pops.
+        counts: those of a search, in the order of `Counts`.
         seconds: s of wall time by stage.
     """
     (built_a, possible_a), (built_b, possible_b) = trees[0].node_counts(), trees[1].node_counts()
@@ -117,9 +117,20 @@ def out_of_range(trees: Trees, where: str, fault: ValueError) -> ObbError:
 
 
 def moving_query(
-    pair: PairQuestion, *, any_contact: bool = False, each_pair: bool = False
+    pair: PairQuestion,
+    *,
+    any_contact: bool = False,
+    each_pair: bool = False,
+    box_tests_before_screw: int | None = None,
 ) -> kernels.ContactQuery:
     """Return the kernels' query about bodies of constant velocities, not yet advanced.
+
+    Args:
+        pair: the question.
+        any_contact: whether any proof of contact will do, not of the first.
+        each_pair: whether the contacts of all pairs of triangles are asked for.
+        box_tests_before_screw: after how many it is asked whether the bodies move on a common
+            screw. None: after as many as they have triangles.
 
     Raises:
         MotionError: positions leave the range of double.
@@ -140,6 +151,7 @@ def moving_query(
             time_tolerance=pair.time_tolerance,
             any_contact=any_contact,
             each_pair=each_pair,
+            box_tests_before_screw=box_tests_before_screw,
         )
     except ValueError as fault:
         raise out_of_range(pair.trees, "motion", fault) from fault

@@ -160,11 +160,14 @@ def _near_pairs(
         )
         query = moving_query(wide, each_pair=True)
         for found in search.found(query, pair.trees, leg.start):
-            if found.ranges in known:
+            by_boxes = found.evidence is kernels.Evidence.BOXES
+            # Of boxes their places in the trees; of triangles their rows, however they were met.
+            which = found.ranges if by_boxes else (found.triangle_a, found.triangle_b)
+            if which in known:
                 continue
-            known.add(found.ranges)
+            known.add(which)
             low = on_clock(leg.start, found.low, pair.duration, up=False)
-            if found.evidence is kernels.Evidence.BOXES:
+            if by_boxes:
                 contact = contact_of(query, found, clearance)
                 yield low, partial(_boxes, contact, low)
             else:

@@ -95,6 +95,7 @@ def cost_rows(stats: Record) -> list[tuple[str, str]]:
     return [
         ("box tests", count(stats["box_tests"])),
         ("triangle tests", triangle_tests(stats)),
+        *image_rows(stats),
         ("boxes built", f"{_built(stats, 'a')} of A, {_built(stats, 'b')} of B"),
         ("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())),
     ]
@@ -107,6 +108,12 @@ def as_sampled(result: Record, *, by_boxes: bool) -> str:
         return f" of boxes as sampled: the surfaces are at most {bound} apart"
     off = f"paths at most {bound} off the true ones" if result["error_bound"] else "the true paths"
     return f" as sampled, on {off}"
+
+
+def image_rows(stats: Record) -> list[tuple[str, str]]:
+    """Return the row of a question that was answered along a common screw of the bodies."""
+    images = stats["image_tests"]
+    return [("image tests", f"{count(images)}, along a common screw")] if images else []
 
 
 def triangle_tests(stats: Record) -> str:

@@ -15,7 +15,7 @@ from obbcli.report.record import (
     note_rows,
     seconds_part,
 )
-from obbcli.report.rows import triangle_tests
+from obbcli.report.rows import image_rows, triangle_tests
 from obbcli.report.table import Table, count, point, seconds
 
 if TYPE_CHECKING:
@@ -155,6 +155,7 @@ def scene_tables(record: Record) -> list[Table]:
         ("answer", _sentence(record)),
         ("box tests", count(stats["box_tests"])),
         ("triangle tests", triangle_tests(stats)),
+        *image_rows(stats),
         ("time", ", ".join(f"{k} {seconds(v)}" for k, v in stats["seconds"].items())),
     ]
     tables = [Table(rows)]

@@ -87,12 +87,13 @@ class AllContacts(ContactStream):
     def stats(self) -> SceneStats:
         """What became of the pairs so far, and what it took."""
         stats = self._firsts.stats
-        boxes, triangles, exact, pops = self._counts
+        boxes, triangles, exact, pops, images = self._counts
         return stats._replace(
             box_tests=stats.box_tests + boxes,
             triangle_tests=stats.triangle_tests + triangles,
             exact_triangle_tests=stats.exact_triangle_tests + exact,
             pops=stats.pops + pops,
+            image_tests=stats.image_tests + images,
         )
 
     def stop(self) -> None:

@@ -124,7 +124,7 @@ class ScenePairs:
         """Return what became of the pairs.
 
         Args:
-            counts: box tests, triangle tests, exact ones and pops.
+            counts: what the search counted.
             apart: pairs that were proven apart, of the candidates.
             in_contact: pairs of which a contact is known.
             open_: pairs that a limit left open.

@@ -83,6 +83,7 @@ class SceneStats(NamedTuple):
         triangle_tests: pairs of triangles tested.
         exact_triangle_tests: those of them that exact arithmetic had to decide.
         pops: pairs taken from queues.
+        image_tests: pairs of images tested, of bodies that move on a common screw.
         bodies: what of each body was used.
         seconds: s of wall time by stage.
     """
@@ -99,5 +100,6 @@ class SceneStats(NamedTuple):
     triangle_tests: int
     exact_triangle_tests: int
     pops: int
+    image_tests: int
     bodies: tuple[BodyStats, ...]
     seconds: Mapping[str, float]

@@ -68,9 +68,9 @@ def sweep(
         `feature` its words (empty where none), `time` and its bounds `time_lo` and `time_hi` s,
         `contained`, `point`, `point_a`, `point_b`, `normal`, `normal_a`, `normal_b` (3,),
         `triangle_a`, `triangle_b`, `distance`, `error_bound`, `approximate`, and the counters
-        `box_tests`, `triangle_tests`, `exact_triangle_tests`, `pops`. NaN, or -1 of triangles,
-        where a field does not apply. `part_a` and `part_b` are empty unless `FILE#PATTERN` selected
-        parts.
+        `box_tests`, `triangle_tests`, `exact_triangle_tests`, `pops`, `image_tests`. NaN, or -1 of
+        triangles, where a field does not apply. `part_a` and `part_b` are empty unless
+        `FILE#PATTERN` selected parts.
 
     Raises:
         MotionError: motions or durations are no numbers or of another shape, a body moves by itself

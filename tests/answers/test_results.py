@@ -28,6 +28,7 @@ STATS = QueryStats(
     triangle_tests=2,
     exact_triangle_tests=0,
     pops=3,
+    image_tests=0,
     nodes_built_a=4,
     nodes_built_b=5,
     nodes_possible_a=6,

@@ -183,9 +183,12 @@ void check_answer(const Body& a, const Body& b, double duration, const obb::Swee
     }
 }
 
-// Every pair's own contact, in order.
-void check_each(const Body& a, const Body& b, double duration) {
+// Every pair's own contact, in order; on a common screw where `is_screw` asks for that at once.
+void check_each(const Body& a, const Body& b, double duration, bool is_screw) {
     obb::ContactQueryOptions options;
+    if (is_screw) {
+        options.box_tests_before_screw = 0;
+    }
     options.duration = duration;
     options.time_tolerance = 1e-9 * duration;
     options.each_pair = true;
@@ -209,6 +212,52 @@ void check_each(const Body& a, const Body& b, double duration) {
     require(count <= a.corners.size() * b.corners.size(), "a pair has one first contact");
 }
 
+// Bodies on one screw, as seen from each other: the first contact by images is held to the samples,
+// and to what steps say.
+void check_screw(const Body& a, const Body& b, double duration, const obb::Limits& limits) {
+    obb::ContactQueryOptions options{
+        .duration = duration, .time_tolerance = 1e-9 * duration, .limits = limits};
+    std::array<std::optional<obb::Contact>, 2> found;
+    std::array<double, 2> low{};
+    bool are_done = true;
+    for (const std::size_t way : {0, 1}) { // images, steps
+        options.box_tests_before_screw = way == 0 ? 0 : ~std::uint64_t{0};
+        const obb::TreeView tree_a = a.tree->view(), tree_b = b.tree->view();
+        obb::ContactQuery query(tree_a, a.pose, a.screw, tree_b, b.pose, b.screw, options);
+        bool is_done = false;
+        while (!is_done && query.counts().pops < kMostPops) {
+            is_done = query.advance(kMostPops - query.counts().pops);
+        }
+        are_done = are_done && is_done && !query.has_given_up();
+        found[way] = query.contact();
+        low[way] = query.lower_bound();
+    }
+    for (const std::size_t way : {0, 1}) {
+        const auto& proven = found[1 - way];
+        require(!proven || proven->evidence != obb::Evidence::kIntersecting ||
+                    low[way] <= proven->high,
+                "no way proves apart what the other proves to meet");
+    }
+    require(!are_done || found[0].has_value() == found[1].has_value() ||
+                (found[0] ? found[0] : found[1])->evidence != obb::Evidence::kIntersecting,
+            "images and steps agree");
+    for (int k = 0; k <= kSamples; ++k) {
+        const long double time = duration * static_cast<long double>(k) / kSamples;
+        if (time >= low[0] || time > duration) {
+            break;
+        }
+        require(!surely_cross(a, b, time), "nothing crosses while images prove it apart");
+    }
+}
+
+// The same velocities, or another share of them, about the same axis.
+obb::Screw along(const obb::Screw& screw, double share, double slide) {
+    obb::Screw other = screw;
+    other.angular_velocity = share * screw.angular_velocity;
+    other.linear_velocity = slide * screw.angular_velocity;
+    return other;
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -221,7 +270,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     limits.clearance = (kind & 16) != 0 ? std::fabs(bytes.moderate()) / 16 : 0;
     limits.distance_tolerance = (kind & 32) != 0 ? std::fabs(bytes.moderate()) / 16 : -1;
     limits.boxes.max_depth_a = (kind & 64) != 0 ? bytes.below(4) : ~0U;
-    const Body a(bytes, kind % 4), b(bytes, kind % 4);
+    Body a(bytes, kind % 4), b(bytes, kind % 4);
+    const bool is_screw = (kind & 128) != 0;
+    if (is_screw) {
+        const std::array<double, 4> shares{0, 0.5, -1, 2};
+        const double slide_a = bytes.moderate(), slide_b = bytes.moderate();
+        a.screw = along(b.screw, shares[bytes.below(4)], slide_a);
+        b.screw = along(b.screw, 1, slide_b);
+    }
     try {
         const obb::SweepAnswer answer = ask(a, b, duration, limits);
         check_answer(a, b, duration, answer);
@@ -230,7 +286,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!(is_proven(answer) && swapped.status == obb::SweepStatus::kSeparated) &&
                     !(is_proven(swapped) && answer.status == obb::SweepStatus::kSeparated),
                 "nobody meets whom the swapped question proves apart");
-        check_each(a, b, duration);
+        check_each(a, b, duration, is_screw);
+        if (is_screw && answer.status != obb::SweepStatus::kTrianglesAtStart &&
+            answer.status != obb::SweepStatus::kOverlapAtStart) {
+            check_screw(a, b, duration, limits);
+        }
     } catch (const std::domain_error&) { // numbers beyond the range of double
     }
     return 0;

@@ -15,6 +15,7 @@ from oracles.screw import Mover
 
 import obbcli
 from obbcli import Accuracy, Body, Contact, Mesh, Motion, ObbTree, Status
+from obbcli.answers.counts import Counts
 from obbcli.questions.contacts import search_contacts
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.search import Search
@@ -185,7 +186,7 @@ def test_nothing_is_done_for_contacts_that_nobody_asks_for() -> None:
     every = list(search_contacts(PairQuestion.of(*spinning_stars()), whole))
 
     found = search_contacts(PairQuestion.of(*spinning_stars()), part)
-    assert part.counts == (0, 0, 0, 0)
+    assert part.counts == Counts()
     first = next(found)
     pops = part.counts[3]
 

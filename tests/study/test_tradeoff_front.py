@@ -16,7 +16,7 @@ from obbcli.study.tradeoff.trials import Timing, Trial, front_of
 # Few values, so that many points are equal in one coordinate or both.
 ERRORS = (None, 0.0, 1e-9, 1e-3, 0.1, 0.5, math.inf)
 POINTS = st.lists(st.sampled_from([(e, t) for e in ERRORS for t in (1.0, 2.0, 3.0, 4.0)]))
-STATS = QueryStats(1, 1, 0, 1, 1, 1, 1, 1, {})
+STATS = QueryStats(1, 1, 0, 1, 0, 1, 1, 1, 1, {})
 ANSWER = FirstContact(status=Status.CONTACT, time=0.5, time_bounds=(0.5, 0.5), stats=STATS)
 
 

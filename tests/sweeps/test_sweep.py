@@ -24,7 +24,7 @@ from obbcli import (
 )
 
 APART = Pose((0.3, -0.2, 0.5), (3.0, 0.1, -0.2))
-COUNTERS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops")
+COUNTERS = ("box_tests", "triangle_tests", "exact_triangle_tests", "pops", "image_tests")
 
 
 @pytest.fixture(scope="module")

@@ -88,7 +88,7 @@ def _all_pairs(name: str, threads: int = 1) -> Counts:
     a, b = bodies(name)
     trees = [body.shape for body in (a, b)]
     _, counts = kernels.triangle_pairs(a.placed, b.placed, 2**64 - 1, threads, 2**64 - 1)
-    box_tests, triangle_tests, _, pops = counts
+    box_tests, triangle_tests, _, pops, _ = counts
     return sum(tree.node_count for tree in trees), box_tests, triangle_tests, pops
 
 

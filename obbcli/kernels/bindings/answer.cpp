@@ -43,7 +43,7 @@ nb::object stats_of(const AtRestFound& found) {
     seconds["load"] = found.load_seconds;
     seconds["query"] = found.seconds;
     const auto& c = found.counts;
-    return nb::handle(stats_class)(c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], seconds);
+    return nb::handle(stats_class)(c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], seconds);
 }
 
 nb::object made(const AtRestFound& found, Field field) {

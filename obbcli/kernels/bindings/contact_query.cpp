@@ -70,14 +70,15 @@ void bind_contact_query(nb::module_& m) {
             [](obb::ContactQuery* self, const Tree& a, const obb::Pose& pose_a,
                const obb::Screw& screw_a, const Tree& b, const obb::Pose& pose_b,
                const obb::Screw& screw_b, const obb::Limits& limits, double duration,
-               double time_tolerance, bool any_contact, bool each_pair) {
-                new (self)
-                    obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
-                                      {duration, time_tolerance, limits, any_contact, each_pair});
+               double time_tolerance, bool any_contact, bool each_pair,
+               std::optional<std::uint64_t> box_tests_before_screw) {
+                new (self) obb::ContactQuery(a.view, pose_a, screw_a, b.view, pose_b, screw_b,
+                                             {duration, time_tolerance, limits, any_contact,
+                                              each_pair, box_tests_before_screw});
             },
             "a"_a, "pose_a"_a, "screw_a"_a, "b"_a, "pose_b"_a, "screw_b"_a, "limits"_a,
             nb::kw_only(), "duration"_a, "time_tolerance"_a, "any_contact"_a, "each_pair"_a,
-            nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
+            "box_tests_before_screw"_a = nb::none(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>())
         .def("advance", &obb::ContactQuery::advance, "max_pops"_a,
              "until"_a = std::numeric_limits<double>::infinity(),
              nb::call_guard<nb::gil_scoped_release>())

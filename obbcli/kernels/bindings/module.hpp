@@ -66,10 +66,11 @@ Array seen(std::span<const Record> records, std::initializer_list<std::size_t> s
 
 // Counters as Python reads them, in the order of `Counts` in counts.py: one call for all, as
 // reading them one by one would cost more than many a query.
-using Counts = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
+using Counts =
+    std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
 
 inline Counts counts_of(const obb::WalkCounts& c) {
-    return {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops};
+    return {c.box_tests, c.triangle_tests, c.exact_triangle_tests, c.pops, c.image_tests};
 }
 
 // Arrays of a tree, kept alive, and the view on them that the kernels use.

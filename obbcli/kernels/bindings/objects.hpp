@@ -47,14 +47,14 @@ struct AtRestFound {
     std::int64_t triangle_a = 0, triangle_b = 0;
     double error_bound = 0;
     double load_seconds = 0, seconds = 0;
-    std::array<std::uint64_t, 8> counts{}; // as `QueryStats` has them
+    std::array<std::uint64_t, 9> counts{}; // as `QueryStats` has them
 };
 
-inline std::array<std::uint64_t, 8> all_counts(const obb::WalkCounts& counts, const Tree& a,
+inline std::array<std::uint64_t, 9> all_counts(const obb::WalkCounts& counts, const Tree& a,
                                                const Tree& b) {
     return {counts.box_tests,      counts.triangle_tests, counts.exact_triangle_tests,
-            counts.pops,           a.node_count(),        b.node_count(),
-            a.possible_node_count, b.possible_node_count};
+            counts.pops,           counts.image_tests,    a.node_count(),
+            b.node_count(),        a.possible_node_count, b.possible_node_count};
 }
 
 // An answer of the class that was made known; a new reference, null with an error set.

@@ -140,6 +140,7 @@ Columns answer_columns() {
     tell("triangle_tests", row.counts.triangle_tests);
     tell("exact_triangle_tests", row.counts.exact_triangle_tests);
     tell("pops", row.counts.pops);
+    tell("image_tests", row.counts.image_tests);
     return columns;
 }
 

@@ -69,7 +69,8 @@ void TreeBuilder::make_root() {
 TreeView TreeBuilder::view() const {
     return {mesh_.vertices,       slots_.corners.span(),
             slots_.ids.span(),    slots_.nodes.span(),
-            mesh_.scale_exponent, on_demand_.ready != nullptr ? &on_demand_ : nullptr};
+            mesh_.scale_exponent, on_demand_.ready != nullptr ? &on_demand_ : nullptr,
+            mesh_.corners};
 }
 
 // Whoever loses the race for the lock finds the node ready. The flag is written last: from then on

@@ -37,12 +37,14 @@ struct WalkCounts {
     std::uint64_t triangle_tests = 0;
     std::uint64_t exact_triangle_tests = 0; // those that took more digits than double has
     std::uint64_t pops = 0;
+    std::uint64_t image_tests = 0; // of triangles in coordinates that a screw leaves alone
 
     WalkCounts& operator+=(const WalkCounts& more) {
         box_tests += more.box_tests;
         triangle_tests += more.triangle_tests;
         exact_triangle_tests += more.exact_triangle_tests;
         pops += more.pops;
+        image_tests += more.image_tests;
         return *this;
     }
 };

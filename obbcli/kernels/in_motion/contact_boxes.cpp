@@ -143,7 +143,7 @@ void ContactQuery::visit(const Entry& entry) {
     const bool open_a = is_open(pair_.a().tree(), entry.a, options_.limits.boxes.max_depth_a);
     const bool open_b = is_open(pair_.b().tree(), entry.b, options_.limits.boxes.max_depth_b);
     if (!open_a && !open_b) {
-        if (options_.each_pair && found_.knows(entry.a, entry.b)) {
+        if (options_.each_pair && found_.knows(known_key(entry.a, entry.b))) {
             return;
         }
         if (!entry.a.is_triangle() || !entry.b.is_triangle()) {

@@ -14,15 +14,15 @@ namespace obb {
 
 class ContactList {
   public:
-    void add(const Contact& contact) {
-        known_.insert(key_of(contact.a, contact.b));
+    void add(const Contact& contact) { add(contact, key_of(contact.a, contact.b)); }
+    // The same where another key names the pair.
+    void add(const Contact& contact, std::uint64_t key) {
+        known_.insert(key);
         found_.push_back(contact);
         std::push_heap(found_.begin(), found_.end(), LaterLow{});
     }
     // Whether a contact of the pair was added, be it taken or not.
-    [[nodiscard]] bool knows(const NodeRef& a, const NodeRef& b) const {
-        return known_.contains(key_of(a, b));
-    }
+    [[nodiscard]] bool knows(std::uint64_t key) const { return known_.contains(key); }
     // When the next contact starts; infinite where there is none.
     [[nodiscard]] double next_low() const {
         return found_.empty() ? std::numeric_limits<double>::infinity() : found_.front().low;

@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t kCrowdPops = 4096;
 // Beyond this an angle in twice the digits of a double says nothing any more.
 constexpr double kMostRadians = 0x1p50;
+// Box tests before images on a screw are asked for, whatever the bodies: as quick as to make some.
+constexpr std::uint64_t kLeastBoxTests = 1024;
 
 } // namespace
 
@@ -25,6 +27,8 @@ ContactQuery::ContactQuery(const TreeView& a, const Pose& pose_a, const Screw& s
     : pair_(a, pose_a, screw_a, b, pose_b, screw_b, options.duration, options.limits.clearance),
       options_(options), time_tolerance_(pair_.scaled_time(options.time_tolerance)),
       distance_tolerance_(pair_.scaled_length(options.limits.distance_tolerance)),
+      screw_due_(options.box_tests_before_screw.value_or(
+          std::max(kLeastBoxTests, std::uint64_t{a.triangle_count()} + b.triangle_count()))),
       stalled_(time_tolerance_) {
     if (pair_.turning() > kMostRadians) {
         give_up(0);
@@ -103,13 +107,23 @@ bool ContactQuery::advance(std::uint64_t max_pops, double until) {
             take_tie(verdict);
             continue;
         }
+        if (is_asking_screw() && !make_images(clock)) {
+            break;
+        }
         if (has_ended() || is_ready() || lower_bound_ > last) {
             break;
         }
+        if (is_screw_due()) {
+            ask_screw();
+            continue;
+        }
         --max_pops;
-        const Entry entry = queue_.pop();
         ++counts_.pops;
-        visit(entry);
+        if (screw_ != nullptr && screw_->next_time() < queue_.next_time()) {
+            advance_images();
+        } else {
+            visit(queue_.pop());
+        }
     }
     return has_ended();
 }
@@ -119,7 +133,7 @@ bool ContactQuery::has_ended() {
     if (is_finished_ || ties_.is_looking()) {
         return is_finished_;
     }
-    const double next = queue_.next_time();
+    const double next = next_time();
     const double stalled = stalled_.is_empty() ? next : stalled_.first_time();
     lower_bound_ = std::min({next, stalled, pair_.duration()});
     if (exact_ && (next >= exact_->high || options_.any_contact)) {
@@ -133,10 +147,16 @@ bool ContactQuery::has_ended() {
                        proof_->a, proof_->b, 0, 0});
     } else if (stalled_.is_due(next, counts_.pops)) {
         settle(stalled_.settle(pair_, next, counts_.pops), stalled);
-    } else if (queue_.is_empty()) {
+    } else if (std::isinf(next)) {
         finish(std::nullopt);
     }
     return is_finished_;
+}
+
+// No pair that waits is in contact before this; infinite where none waits.
+double ContactQuery::next_time() const {
+    const double next = queue_.next_time();
+    return screw_ == nullptr ? next : std::min(next, screw_->next_time());
 }
 
 std::uint64_t ContactQuery::key_of(const NodeRef& a, const NodeRef& b) {
@@ -150,7 +170,15 @@ void ContactQuery::report(Contact contact) {
         return;
     }
     name_triangles(contact);
-    found_.add(contact);
+    found_.add(contact, known_key(contact.a, contact.b));
+}
+
+// Triangles may be known by their places in the tree or by their rows of the mesh.
+std::uint64_t ContactQuery::known_key(const NodeRef& a, const NodeRef& b) const {
+    if (has_limits()) {
+        return key_of(a, b);
+    }
+    return std::uint64_t{pair_.a().id(a)} << 32U | pair_.b().id(b);
 }
 
 // Takes the verdict on pairs that stalled at a time. A contact that was proven within the bracket
@@ -178,7 +206,7 @@ void ContactQuery::name_triangles(Contact& contact) const {
 }
 
 // Whether a contact waits that no other can come before: of equal times the list decides.
-bool ContactQuery::is_ready() const { return found_.next_low() < queue_.next_time(); }
+bool ContactQuery::is_ready() const { return found_.next_low() < next_time(); }
 
 std::optional<Contact> ContactQuery::take() {
     if (cast_) {
@@ -205,6 +233,9 @@ void ContactQuery::finish(std::optional<Contact> contact) {
     }
     is_finished_ = true;
     queue_.clear();
+    if (screw_ != nullptr) {
+        screw_->clear();
+    }
 }
 
 // Ends the search where a pair is apart but turns so fast that its step is lost to rounding.

@@ -11,12 +11,14 @@
 #include "in_motion/moving_pair.hpp"
 #include "in_motion/nearness.hpp"
 #include "in_motion/ray_cast.hpp"
+#include "in_motion/screw_search.hpp"
 #include "in_motion/tie_planes.hpp"
 #include "in_motion/windows.hpp"
 #include "work/slice.hpp"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,6 +34,9 @@ struct ContactQueryOptions {
     bool any_contact = false;
     // Not the bodies' first contact alone: that of every pair of triangles, one after the other.
     bool each_pair = false;
+    // Pairs of boxes to be tested before it is asked whether the bodies move on a common screw.
+    // Nothing: as many as they have triangles, so that quick questions pay nothing for it.
+    std::optional<std::uint64_t> box_tests_before_screw = std::nullopt;
 };
 
 class ContactQuery {
@@ -73,6 +78,7 @@ class ContactQuery {
         std::uint32_t opened = Windows::kWhole; // the one that was opened for this pair before
         std::uint32_t reopened = 0; // how many windows were, since the two last moved apart
         std::uint32_t next = 0;     // of a leaf that is opened: its first triangle not yet pushed
+        ImagePair images{};         // of two triangles on a screw: they meet in its windows only
 
         [[nodiscard]] PairRef refs() const { return {a, b}; }
     };
@@ -82,6 +88,13 @@ class ContactQuery {
     [[nodiscard]] bool is_open(const TreeView& tree, const NodeRef& ref,
                                std::uint32_t max_depth) const;
     [[nodiscard]] std::optional<double> later(const Entry& entry, double step);
+    [[nodiscard]] double next_time() const;
+    [[nodiscard]] bool is_asking_screw() const { return screw_ != nullptr && !screw_->is_made(); }
+    [[nodiscard]] bool is_screw_due() const;
+    void ask_screw();
+    [[nodiscard]] bool make_images(SliceClock& clock);
+    void advance_images();
+    [[nodiscard]] std::optional<double> in_window(const Entry& entry, double time) const;
     void push(const Entry& entry);
     void visit(const Entry& entry);
     void part(const Entry& entry);
@@ -106,6 +119,7 @@ class ContactQuery {
     [[nodiscard]] bool prove_contact(const Entry& entry);
     [[nodiscard]] bool has_ended();
     [[nodiscard]] static std::uint64_t key_of(const NodeRef& a, const NodeRef& b);
+    [[nodiscard]] std::uint64_t known_key(const NodeRef& a, const NodeRef& b) const;
     [[nodiscard]] bool is_ready() const;
     void name_triangles(Contact& contact) const;
     void report(Contact contact);
@@ -121,7 +135,9 @@ class ContactQuery {
     std::optional<RayCast> cast_;                // which answers in place of what follows
     BoundQueue<Entry> queue_;
     Windows windows_;
-    std::optional<Entry> proof_; // the earliest pair proven to intersect, and when
+    std::uint64_t screw_due_;            // at so many box tests
+    std::unique_ptr<ScrewSearch> screw_; // where the bodies move on a common screw
+    std::optional<Entry> proof_;         // the earliest pair proven to intersect, and when
     std::optional<Contact> exact_;
     TiePlanes ties_;                 // of that
     std::optional<Entry> looked_at_; // the pair that a tie is looked for

@@ -110,12 +110,19 @@ void ContactQuery::meet_triangles(const Entry& entry) {
     if (!time) {
         return;
     }
+    // Whether it is near enough to end the search does not depend on how it was come by.
     const bool is_near = !(*time - entry.time > time_tolerance_) || step.gap <= distance_tolerance_;
     if (is_near && prove_contact(entry)) {
         return;
     }
-    if (*time > entry.time) {
-        push({*time, entry.end, entry.a, entry.b, entry.window});
+    const std::optional<double> meeting = in_window(entry, *time);
+    if (!meeting) {
+        return;
+    }
+    if (*meeting > entry.time) {
+        Entry next = entry;
+        next.time = *meeting;
+        push(next);
     } else if (step.gap > 4 * pair_.triangle_error(a, b) + pair_.clearance()) {
         give_up(entry.time);
     } else if (options_.each_pair) {

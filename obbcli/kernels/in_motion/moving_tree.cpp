@@ -66,7 +66,7 @@ Obb MovingTree::box(const NodeRef& ref) const {
 }
 
 Triangle MovingTree::posed_triangle(const NodeRef& ref) const {
-    const Triangle t = tree_->triangle(ref.begin);
+    const Triangle t = tree_->triangle(ref);
     return pose_.is_identity() ? t : posed(pose_, t);
 }
 
@@ -74,7 +74,7 @@ Triangle MovingTree::triangle(const NodeRef& ref) const {
     const Mat3 spun = spin_.matrix(turn_);
     Triangle t = posed_triangle(ref);
     for (Vec3& v : t) {
-        v = spun * (scaled(v, -length_exponent_) - pivot_);
+        v = spun * about_pivot(v);
     }
     return t;
 }

@@ -1,6 +1,7 @@
 // A tree in rigid motion: its boxes and triangles at any time, relative to its pivot.
 #pragma once
 
+#include "numbers/scale.hpp"
 #include "shapes/obb.hpp"
 #include "shapes/pose.hpp"
 #include "shapes/screw.hpp"
@@ -25,9 +26,7 @@ class MovingTree {
 
     [[nodiscard]] const TreeView& tree() const { return *tree_; }
     [[nodiscard]] const Spin& spin() const { return spin_; }
-    [[nodiscard]] std::uint32_t id(const NodeRef& ref) const {
-        return tree_->triangle_ids[ref.begin];
-    }
+    [[nodiscard]] std::uint32_t id(const NodeRef& ref) const { return tree_->row_of(ref); }
     // By how much a box may miss a vertex: what posing and shifting it rounded away.
     [[nodiscard]] double box_error() const { return box_error_; }
 
@@ -40,6 +39,9 @@ class MovingTree {
     [[nodiscard]] const Mat3& rotation() const { return pose_.rotation; }
     [[nodiscard]] Vec3 offset() const { return offset_; }
 
+    // Where a vertex of the mesh is at time 0, about the pivot.
+    [[nodiscard]] Vec3 start_of(Vec3 vertex) const { return about_pivot(posed_vertex(vertex)); }
+
     // All that follows is at this time.
     void set_time(double time) { turn_ = spin_.turn(time); }
     [[nodiscard]] const Turn& turn() const { return turn_; }
@@ -50,6 +52,13 @@ class MovingTree {
     [[nodiscard]] Triangle posed_triangle(const NodeRef& ref) const;
 
   private:
+    [[nodiscard]] Vec3 posed_vertex(Vec3 vertex) const {
+        return pose_.is_identity() ? vertex : posed(pose_, vertex);
+    }
+    [[nodiscard]] Vec3 about_pivot(Vec3 posed_vertex) const {
+        return scaled(posed_vertex, -length_exponent_) - pivot_;
+    }
+
     const TreeView* tree_;
     Pose pose_;
     Screw screw_;

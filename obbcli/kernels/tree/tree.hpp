@@ -31,6 +31,9 @@ struct NodeRef {
     [[nodiscard]] bool is_triangle() const { return end - begin == 1; }
 };
 
+// Slot of a triangle that is known by its row of the mesh, whatever its place in the tree.
+inline constexpr std::uint32_t kMeshRow = 0xffffffff;
+
 // Of a node that has children which are not made yet; no range has its end there.
 inline constexpr std::uint32_t kUnsplit = 0xffffffff;
 
@@ -58,6 +61,7 @@ struct TreeView {
     std::span<const Node> nodes;
     int scale_exponent; // a length in the tree's unit times 2^scale_exponent is in mesh units
     const OnDemand* on_demand = nullptr; // of a tree that is all there: none
+    std::span<const Corners> rows{};     // the mesh's own triangles, where the tree grows over them
 
     [[nodiscard]] std::uint32_t triangle_count() const {
         return static_cast<std::uint32_t>(corners.size());
@@ -122,6 +126,18 @@ struct TreeView {
     [[nodiscard]] Triangle triangle(std::uint32_t position) const {
         const auto [p, q, r] = corners_of(position);
         return {*p, *q, *r};
+    }
+
+    // The same of a triangle that is known by its place in the tree, or by its row of the mesh.
+    [[nodiscard]] Triangle triangle(const NodeRef& ref) const {
+        if (ref.slot == kMeshRow) {
+            const Corners& c = rows[ref.begin];
+            return {vertices[c[0]], vertices[c[1]], vertices[c[2]]};
+        }
+        return triangle(ref.begin);
+    }
+    [[nodiscard]] std::uint32_t row_of(const NodeRef& ref) const {
+        return ref.slot == kMeshRow ? ref.begin : triangle_ids[ref.begin];
     }
 };
 

@@ -7,6 +7,7 @@ from obbcli.answers.distance import Distance
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,
+    LATER_COUNTERS,
     PART_NAMES,
     PATH_FIELDS,
     RIGID_FIELDS,
@@ -164,4 +165,5 @@ def _scene_stats() -> Schema:
         "meshes_decoded": told(COUNT, "of a mesh file's own, where that is the scene"),
         "meshes_possible": told(COUNT, "how many that file has; its parts are copies of them"),
     }
-    return record(documented(SceneStats, counts | others) | decoded, optional=decoded)
+    optional = (*decoded, *LATER_COUNTERS)
+    return record(documented(SceneStats, counts | others) | decoded, optional=optional)

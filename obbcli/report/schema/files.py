@@ -8,6 +8,7 @@ from obbcli.report.schema.shared import (
     BUILD_FIELDS,
     CONTACT_FIELDS,
     COUNTERS,
+    LATER_COUNTERS,
     PART_NAMES,
     SECONDS,
     document,
@@ -182,7 +183,7 @@ def sweep_row() -> Schema:
         "row": told(COUNT, "of the file of questions, from 0"),
         "id": {"description": "what the row calls itself; null where it has no name"},
     }
-    stats = {"stats": record(dict.fromkeys(COUNTERS, COUNT))}
+    stats = {"stats": record(dict.fromkeys(COUNTERS, COUNT), optional=LATER_COUNTERS)}
     error = {"error": record({"where": _PLACE, "fault": _FAULT, "remedy": _REMEDY})}
     answered = record(head | CONTACT_FIELDS | PART_NAMES | stats, optional=PART_NAMES)
     return {"oneOf": [answered, record(head | error)]}

@@ -45,6 +45,8 @@ CONTACT_FIELDS = _CONTACT
 
 # What every kind of search counts.
 COUNTERS = Counts._fields
+# Those that documents of earlier versions do not have.
+LATER_COUNTERS = ("image_tests",)
 STATS_FIELDS = documented(
     QueryStats,
     dict.fromkeys(
@@ -99,7 +101,11 @@ DEFINITIONS: dict[str, Schema] = {
         description="A file that was asked about.",
     ),
     "accuracy": record(ACCURACY_FIELDS, description="The accuracy as used."),
-    "stats": record(STATS_FIELDS, description="What the answer cost; not the same every time."),
+    "stats": record(
+        STATS_FIELDS,
+        optional=LATER_COUNTERS,
+        description="What the answer cost; not the same every time.",
+    ),
     "contact": record(
         CONTACT_FIELDS | PART_NAMES,
         optional=PART_NAMES,
