@@ -6,6 +6,7 @@ import io
 from math import nextafter
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
+import numpy as np
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.STEPCAFControl import STEPCAFControl_Reader
@@ -13,10 +14,16 @@ from OCP.STEPConstruct import STEPConstruct_ExternRefs
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
-from OCP.TopAbs import TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from obbcli.mesh.formats.step.losses import PLACED, makes_surface, refuse_losses, refuse_unread
+from obbcli.mesh.formats.step.losses import (
+    PLACED,
+    is_solid,
+    makes_surface,
+    refuse_losses,
+    refuse_unread,
+)
 from obbcli.mesh.formats.step.occ import children, matrix_of, name_of, shapes_in
 from obbcli.mesh.formats.step.refusal import StepError
 from obbcli.mesh.formats.step.units import length_of
@@ -66,6 +73,7 @@ class StepDocument:
         nodes: what the file places, depth first in its order.
         shapes: the exact shape of each product that has faces.
         names: of each of them.
+        notes: what is taken with a change.
 
     Raises:
         StepError: it is no whole STEP file, no product has a face, or something was lost.
@@ -84,10 +92,10 @@ class StepDocument:
             _refuse_empty(data)
         refuse_unread(model, entities, data)
         self.length: Length = length_of(entities)
-        document = _empty_document(self.length.millimetres)
+        document = _empty_document(self.length.asked)
         if not reader.Transfer(document):
             raise StepError("cannot be translated", "export it again, or as STL")
-        refuse_losses(basic.WS().TransferReader().TransientProcess(), entities, data)
+        made = refuse_losses(basic.WS().TransferReader().TransientProcess(), entities, data)
         self._owners = document, reader  # of what labels and shapes are parts of
         self.shapes: list[Any] = []
         self.names: list[str] = []
@@ -96,6 +104,18 @@ class StepDocument:
         self.nodes = list(self._roots(XCAFDoc_DocumentTool.ShapeTool_s(document.Main())))
         if not self.shapes:
             _refuse_empty(data)
+        kept = sum(1 for shape in self.shapes for _ in shapes_in(shape, TopAbs_FACE))
+        if kept < made:
+            fault = f"has {made:,} faces, of which the products have {kept:,}: some would be lost"
+            raise StepError(fault, "export it again, or as STL")
+        self.notes = (*self.length.notes, *self._of_solids(entities))
+
+    def _of_solids(self, entities: Iterable[Any]) -> Iterator[str]:
+        """Yield a note where the library makes shells of what the file calls solids."""
+        told = sum(is_solid(entity) for entity in entities)
+        found = sum(1 for shape in self.shapes for _ in shapes_in(shape, TopAbs_SOLID))
+        if found < told:
+            yield f"solids that do not close, taken as surfaces: {told - found} of {told}"
 
     def _roots(self, tool: Any) -> Iterator[Node]:
         visits = 0
@@ -126,6 +146,8 @@ class StepDocument:
             if not name or name in self._ids:
                 name = name_of(product)
             matrix = matrix_of(XCAFDoc_ShapeTool.GetLocation_s(component))
+            if matrix is not None:
+                matrix[:3, 3] = np.ldexp(matrix[:3, 3], -self.length.exponent)
             yield from self._below(product, Node(node.depth + 1, name, None, matrix))
 
     def _product(self, label: Any) -> int | None:

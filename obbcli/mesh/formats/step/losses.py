@@ -9,6 +9,8 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from obbcli.mesh.formats.step.refusal import StepError
 
 if TYPE_CHECKING:
@@ -25,14 +27,16 @@ _ADMINISTRATION = re.compile(
     r"|StepRepr_.*(Property|Material|Tolerance|ShapeAspect|Measure|Descriptive|Value)"
     r"|StepShape_.*(Dimension|Tolerance|Qualif|Limits|Precision|Qualifier)"
 )
+_FACE = re.compile(r"StepShape_(AdvancedFace|FaceSurface|Face)")
 #: Entities that surface is made of and that translation binds to a shape each.
 _SURFACE = re.compile(
-    r"StepShape_(AdvancedFace|FaceSurface|Face|EdgeLoop|PolyLoop|ClosedShell|OpenShell"
-    r"|ConnectedFaceSet|ManifoldSolidBrep|BrepWithVoids|FacetedBrep\w*|ShellBasedSurfaceModel"
-    r"|FaceBasedSurfaceModel|Csg\w+|\w+Solid|BooleanResult|Block|Sphere|Torus|RightCircularC\w+"
-    r"|RightAngularWedge|SolidReplica|SolidModel)"
+    _FACE.pattern + r"|StepShape_(EdgeLoop|PolyLoop|ManifoldSolidBrep|BrepWithVoids|FacetedBrep\w*"
+    r"|ShellBasedSurfaceModel|FaceBasedSurfaceModel|Csg\w+|\w+Solid|BooleanResult|Block|Sphere"
+    r"|Torus|RightCircularC\w+|RightAngularWedge|SolidReplica|SolidModel)"
 )
+_SOLID = re.compile(r"StepShape_(ManifoldSolidBrep|BrepWithVoids|FacetedBrep\w*)")
 _OTHER_SURFACE = re.compile(r"StepVisual_.*(Tessellated|Triangulated).*|StepShape_GeometricSet")
+_SCALING = "StepGeom_CartesianTransformationOperator3d"
 PLACED = "StepRepr_NextAssemblyUsageOccurrence"
 #: A string, a comment, or a number of an entity with what may follow it.
 _NUMBERS = re.compile(rb"'[^']*'|/\*.*?\*/|#(\d+)[ \t\r\n]*(=)?", re.DOTALL)
@@ -49,6 +53,22 @@ def makes_surface(entities: Iterable[Any]) -> bool:
     return any(_SURFACE.fullmatch(name) or _OTHER_SURFACE.fullmatch(name) for name in names)
 
 
+def _scales(operator: Any) -> bool:
+    """Return whether an operator does more than turn and shift."""
+    if operator.HasScale() and operator.Scale() != 1.0:
+        return True
+    axes = [operator.Axis1(), operator.Axis2(), operator.Axis3()]
+    if any(axis is None or axis.NbDirectionRatios() != 3 for axis in axes):
+        return False  # what is left out completes a right-handed system
+    x, y, z = ([axis.DirectionRatiosValue(k) for k in (1, 2, 3)] for axis in axes)
+    return bool(np.dot(np.cross(x, y), z) < 0.0)
+
+
+def is_solid(entity: Any) -> bool:
+    """Return whether an entity is a solid with faces of its own."""
+    return bool(_SOLID.fullmatch(entity.DynamicType().Name()))
+
+
 def refuse_unread(model: Any, entities: Sequence[Any], data: bytes) -> None:
     """Refuse a file in which an entity that makes, places or measures surface was not understood.
 
@@ -56,9 +76,12 @@ def refuse_unread(model: Any, entities: Sequence[Any], data: bytes) -> None:
         StepError: there is one.
     """
     for place, entity in enumerate(entities):
+        name = entity.DynamicType().Name()
+        if name == _SCALING and _scales(entity) and _used(data, len(entities), [place]):
+            fault = "scales or mirrors a shape, which Open CASCADE does not do rightly"
+            raise StepError(f"{_words(name)} {fault}", _AGAIN, _label(data, len(entities), place))
         if not model.IsErrorEntity(place + 1):
             continue
-        name = entity.DynamicType().Name()
         if name.startswith(_SHAPING) and not _ADMINISTRATION.fullmatch(name):
             check = model.ReportEntity(place + 1).Check()
             why = str(check.CFail(1)) if check.NbFails() else "it is damaged"
@@ -66,13 +89,16 @@ def refuse_unread(model: Any, entities: Sequence[Any], data: bytes) -> None:
             raise StepError(fault, _AGAIN, _label(data, len(entities), place))
 
 
-def refuse_losses(process: Any, entities: Sequence[Any], data: bytes) -> None:
-    """Refuse a file of which a face, loop, shell, solid or instance became no shape.
+def refuse_losses(process: Any, entities: Sequence[Any], data: bytes) -> int:
+    """Refuse a file of which a face, loop, solid or instance became no shape.
 
     Args:
         process: of the translation.
         entities: of the file, in its order.
         data: the file.
+
+    Returns:
+        How many entities became faces.
 
     Raises:
         StepError: there is one that some representation uses.
@@ -90,14 +116,13 @@ def refuse_losses(process: Any, entities: Sequence[Any], data: bytes) -> None:
         for place, entity in enumerate(entities)
         if place not in made and _is_bound(entity.DynamicType().Name())
     ]
-    if not lost:
-        return
-    used = _used(data, len(entities), lost)
+    used = _used(data, len(entities), lost) if lost else []
     if used:
         name = _words(entities[used[0]].DynamicType().Name())
         count = "" if len(used) == 1 else f", the first of {len(used):,}"
         fault = f"{name} cannot be made{count}: it would be lost"
         raise StepError(fault, _AGAIN, _label(data, len(entities), used[0]))
+    return sum(bool(_FACE.fullmatch(entities[place].DynamicType().Name())) for place in made)
 
 
 def _is_bound(name: str) -> bool:
@@ -108,7 +133,7 @@ def _is_bound(name: str) -> bool:
 def _words(name: str) -> str:
     """Return the name of the library's class as the standard spells that of the entity."""
     bare = name.partition("_")[2]
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=t)(?=[23]d$)", "_", bare).upper()
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[a-z])(?=[23]d$)", "_", bare).upper()
 
 
 def _printable(text: str) -> str:

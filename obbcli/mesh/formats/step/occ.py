@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from OCP.TDataStd import TDataStd_Name
-from OCP.TDF import TDF_ChildIterator
+from OCP.TDF import TDF_AttributeIterator, TDF_ChildIterator
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
@@ -39,10 +39,18 @@ def shapes_in(shape: Any, kind: Any) -> Iterator[Any]:
 
 
 def name_of(label: Any) -> str:
-    """Return the name of a label; empty where it has none that shows."""
-    name = TDataStd_Name()
-    found = label.FindAttribute(name.GetID_s(), name)
-    return str(name.Get().ToExtString()).strip() if found else ""
+    """Return the name of a label; empty where it has none that shows.
+
+    Its attributes are looked at one by one: to look for a name that is not there is a fault of
+    memory in OCP.
+    """
+    each = TDF_AttributeIterator(label)
+    while each.More():
+        attribute = each.Value()
+        if isinstance(attribute, TDataStd_Name):
+            return str(attribute.Get().ToExtString()).strip()
+        each.Next()
+    return ""
 
 
 def matrix_of(location: Any) -> NDArray[np.float64] | None:

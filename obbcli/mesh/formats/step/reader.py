@@ -59,18 +59,22 @@ def parts_step(source: Source) -> Iterator[PlacedPart]:
     for note in about["notes"]:
         source.note(note)
     paths = UniquePaths()
+    # Of assemblies, which a part without a name may have.
+    unused: set[str | None] = set()
     outer: list[tuple[str | None, NDArray[np.float64] | None]] = [(None, None)]
     for depth, name, product, numbers in about["nodes"]:
         del outer[depth + 1 :]
-        above, matrix = outer[depth]
+        path, matrix = outer[depth]
+        if name or (product is not None and path not in unused):
+            path = paths.take("/".join(filter(None, (path, name))))
         inner = None if numbers is None else np.array(numbers).reshape(4, 4)
         placed = composed(matrix, inner)
-        path = above
-        if name or product is not None:
-            path = paths.take("/".join(filter(None, (above, name))))
         if product is not None:
+            unused.discard(path)
             yield PlacedPart(path or "", product, partial(products.decode, product), placed)
-        outer.append((path if name else above, placed))
+        else:
+            unused.add(path)
+            outer.append((path, placed))
 
 
 class _Products:

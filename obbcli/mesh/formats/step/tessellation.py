@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import floor, log10
+from math import floor, ldexp, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -43,7 +43,7 @@ class Tessellation(NamedTuple):
         triangles: (F, 3), face by face in the file's order.
         sag: no triangle or edge is measured to be farther from its surface or curve.
         face_count: how many faces were cut.
-        open_edge_count: edges of solids that no two triangles share, turned alike.
+        open_edge_count: of solids alone: edges that no two triangles share, turned alike.
     """
 
     vertices: NDArray[np.float64]
@@ -53,22 +53,23 @@ class Tessellation(NamedTuple):
     open_edge_count: int
 
 
-def tessellated(shape: Any, sag: float | None) -> Tessellation:
+def tessellated(shape: Any, sag: float | None, exponent: int) -> Tessellation:
     """Return the triangles of a shape.
 
     Args:
         shape: of a product.
         sag: how far triangles may be from it; None for 1e-3 of its size.
+        exponent: of the power of two that lengths of the shape are times those told and returned.
 
     Raises:
         StepError: a face gets no triangles, or cannot be cut within the sag.
     """
-    wanted = sag if sag is not None else _SHARE * _rough_size(shape)
-    aim = wanted
+    aim = ldexp(sag, exponent) if sag is not None else _SHARE * _rough_size(shape)
     for _ in range(_TRIES):
         cut = _cut(shape, aim)
-        if sag is None:
-            wanted = _rounded(_SHARE * float(np.linalg.norm(np.ptp(cut.vertices, axis=0))))
+        vertices = np.ldexp(cut.vertices, -exponent)
+        cut = cut._replace(vertices=vertices, sag=ldexp(cut.sag, -exponent))
+        wanted = sag if sag is not None else _default_sag(vertices)
         if cut.sag <= wanted:
             return cut._replace(sag=wanted)
         aim = min(_MARGIN * aim * wanted / cut.sag, _MARGIN * aim)
@@ -86,8 +87,9 @@ def _rough_size(shape: Any) -> float:
     return size
 
 
-def _rounded(value: float) -> float:
-    """Return a number rounded down to two digits."""
+def _default_sag(vertices: NDArray[np.float64]) -> float:
+    """Return 1e-3 of the size of a mesh, rounded down to two digits."""
+    value = _SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     if value <= 0.0:
         raise StepError("is a shape without extent", "export it again")
     digits = 1 - floor(log10(value))
@@ -109,8 +111,11 @@ def _cut(shape: Any, aim: float) -> Tessellation:
         first += len(vertices)
         farthest = max(farthest, deviation)
     vertices, triangles = _joined(np.vstack(points), np.vstack(rows))
-    is_solid = any(True for _ in shapes_in(shape, TopAbs_SOLID))
-    loose = _open_edges(triangles) if is_solid else 0
+    closed = sum(
+        1 for solid in shapes_in(shape, TopAbs_SOLID) for _ in shapes_in(solid, TopAbs_FACE)
+    )
+    # Sheets beside solids have open edges of their own.
+    loose = _open_edges(triangles) if closed == len(points) else 0
     return Tessellation(vertices, triangles, _SPARE * farthest, len(points), loose)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ldexp, log2
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from OCP.STEPConstruct import STEPConstruct_UnitContext
@@ -13,14 +14,15 @@ if TYPE_CHECKING:
 
 #: Conversions such as 2.54 times a centimetre are products of doubles.
 _CLOSE = 1e-12
+#: Units of fewer mm are none.
+_LEAST = 1e-30
 
 
 class Length(NamedTuple):
     """The length of 1 in a file.
 
     Attributes:
-        millimetres: how many it is long, as the library computes it from the file: coordinates
-            that are asked for in exactly this unit are those of the file, bit for bit.
+        millimetres: how many it is long, as the library computes it from the file.
         unit: our name of it; None where it has none, or where the file states no unit.
         notes: what is taken with a change.
     """
@@ -28,6 +30,20 @@ class Length(NamedTuple):
     millimetres: float
     unit: str | None
     notes: tuple[str, ...] = ()
+
+    @property
+    def exponent(self) -> int:
+        """The power of two that the library's coordinates are times those of the file.
+
+        The library's tolerances are made for mm. By a power of two lengths are brought near to
+        them, and back, without being rounded.
+        """
+        return round(log2(self.millimetres))
+
+    @property
+    def asked(self) -> float:
+        """How many mm the library's own unit is to be long."""
+        return ldexp(self.millimetres, -self.exponent)
 
 
 def length_of(entities: Iterable[Any]) -> Length:
@@ -65,7 +81,7 @@ def _millimetres(entity: Any) -> float | None:
         return None
     factors.ComputeFactors(context)
     length = float(factors.LengthFactor())
-    return length if factors.LengthDone() and 0.0 < length < float("inf") else None
+    return length if factors.LengthDone() and _LEAST < length < 1.0 / _LEAST else None
 
 
 def _name(millimetres: float) -> str | None:

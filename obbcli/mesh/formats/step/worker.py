@@ -57,7 +57,7 @@ def _opened(
         for line in questions:
             product = int(line)
             _allow(seconds)
-            cut = tessellated(document.shapes[product], wanted["sag"])
+            cut = tessellated(document.shapes[product], wanted["sag"], document.length.exponent)
             counts = {"vertices": len(cut.vertices), "triangles": len(cut.triangles)}
             about = {"sag": cut.sag, "faces": cut.face_count, "open": cut.open_edge_count}
             _say(answers, counts | about)
@@ -82,7 +82,7 @@ def _about(document: StepDocument) -> dict[str, Any]:
     ]
     return {
         "unit": document.length.unit,
-        "notes": document.length.notes,
+        "notes": document.notes,
         "names": document.names,
         "nodes": nodes,
     }
