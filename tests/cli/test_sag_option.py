@@ -54,6 +54,16 @@ def test_a_sag_for_one_file_of_triangles_is_refused(capsys, words):
     assert f"{words[1]}: {fault}" in said
 
 
+def test_a_sag_for_a_scene_is_a_usage_error(capsys, tmp_path):
+    body = '[[body]]\nname = "{}"\nmesh = "a.stl"\n'
+    (tmp_path / "a.toml").write_text(body.format("a") + body.format("b"))
+    scene = str(tmp_path / "a.toml")
+
+    said = refusal(capsys, 2, "scene", scene, "--sag", "0.1")
+    assert "--sag: cuts exact surfaces of a mesh file, and this is a scene; write sag = D" in said
+    assert "--sag: is 0.0; use a number above 0" in refusal(capsys, 2, "scene", scene, "--sag", "0")
+
+
 @needs_ocp
 def test_a_sag_is_in_the_answer_and_its_note(capsys, ball):
     told = answer(capsys, "info", ball, "--sag", "0.01")
@@ -117,7 +127,7 @@ def test_a_scene_of_a_step_file_asks_about_its_parts(capsys, tmp_path):
     file.assembly("top", *((name, ball, place) for name, place in zip("abc", places, strict=True)))
     path = tmp_path / "a.step"
     path.write_bytes(file.bytes())
-    found = answer(capsys, "scene", str(path))["result"]
+    found = answer(capsys, "scene", str(path), "--sag", "0.05")["result"]
 
     touching = [(each["body_a"], each["body_b"]) for each in found["contacts"]]
     assert touching == [("top/a", "top/b")]

@@ -10,6 +10,7 @@ from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import Command, common_options, option, verify_option
+from obbcli.cli.options.placement import checked_sag, sag_option
 from obbcli.cli.options.two_bodies import QUESTION
 from obbcli.cli.options.words import Finite, PathName, Whole
 from obbcli.cli.output import emit, tell_interrupted
@@ -93,6 +94,7 @@ Examples:
     metavar="T",
     help="Ask about 0 <= t <= T, in s [default: as the file says].",
 )
+@sag_option
 @accuracy_options
 @verify_option
 @common_options()
@@ -106,7 +108,7 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
     _refuse_contradictions(wanted)
     scene, source, stamps = read_scene(
-        file, accuracy, flags["duration"], verify=not flags["no_verify"]
+        file, accuracy, flags["duration"], checked_sag(flags["sag"]), verify=not flags["no_verify"]
     )
     _refuse_of_scene(wanted, scene)
     keep_inputs(common.output, (file, *stamps))

@@ -84,8 +84,7 @@ class UnitOptions(NamedTuple):
             raise UsageError(name, f"is {scale!r}", "use a number above 0")
         if self.weld is not None and not self.weld > 0:
             raise UsageError("--weld", f"is {self.weld!r}", "use a number above 0")
-        if self.sag is not None and not self.sag > 0:
-            raise UsageError("--sag", f"is {self.sag!r}", "use a number above 0")
+        checked_sag(self.sag)
         found = self.unit, scale, self.weld, self.sag
         if found == (None,) * len(found):
             return None
@@ -128,6 +127,18 @@ sag_option = option(
     help="Cut exact surfaces (STEP) into triangles within D of them, in the file's unit "
     "[default: 1e-3 of each product's size].",
 )
+
+
+def checked_sag(sag: float | None) -> float | None:
+    """Return what `--sag` says.
+
+    Raises:
+        UsageError: a number that is not above 0.
+    """
+    if sag is not None and not sag > 0:
+        raise UsageError("--sag", f"is {sag!r}", "use a number above 0")
+    return sag
+
 
 unit_options = gathered(
     "units",
