@@ -6,6 +6,7 @@ from math import ldexp, log2
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from OCP.STEPConstruct import STEPConstruct_UnitContext
+from OCP.StepData import StepData_Factors
 
 from obbcli.mesh.units import UNITS
 
@@ -79,7 +80,7 @@ def _millimetres(entity: Any) -> float | None:
     context = assigned()
     if context is None:
         return None
-    factors.ComputeFactors(context)
+    factors.ComputeFactors(context, StepData_Factors())
     length = float(factors.LengthFactor())
     return length if factors.LengthDone() and _LEAST < length < 1.0 / _LEAST else None
 
