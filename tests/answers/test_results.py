@@ -138,6 +138,14 @@ def test_fields_of_an_answer_are_frozen(tree):
         made.collides = True
 
 
+def test_answer_made_past_its_constructor_claims_nothing():
+    made = Collision.__new__(Collision)
+
+    assert made.status is Status.UNRESOLVED
+    with pytest.raises(UnresolvedError):
+        _ = made.collides
+
+
 def test_answers_can_be_watched_and_collected(tree):
     class Noted(Collision):
         pass

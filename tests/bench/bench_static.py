@@ -1,4 +1,6 @@
-"""Surfaces at rest: yes or no over the pose classes, and every pair of triangles that meet."""
+"""Surfaces at rest: yes or no over the pose classes, the same of a body that is put where it is
+anew, and every pair of triangles that meet.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 TRUTH_TRIANGLES = 500
 # Shorter than a scheduler's slice, so that on a busy machine most samples are whole.
 SAMPLE_SECONDS = 0.0005
+MOVED_CLASSES = ("far", "gap_1e-1", "penetrating", "plates")
 ALL_PAIRS_CLASSES = ("penetrating", "deep", "random_11")
 
 
@@ -40,6 +43,8 @@ def run(quick: bool) -> Iterator[Row]:
         for who, tests in peer_tests.get(pair.name, {}).items():
             notes.setdefault(who, {})["box tests"] = tests
         yield Row("static", pair.name, len(pair.a.faces), timings, notes)
+        if pair.name in MOVED_CLASSES:
+            yield _moved_row(pair, queries, rounds)
     for name in ALL_PAIRS_CLASSES:
         yield _all_pairs_row(POSE_CLASSES[name](triangles), built, rounds // 5)
 
@@ -74,6 +79,13 @@ def _queries(pair: Pair, built: dict[tuple[str, int], object]) -> dict[str, Quer
             models.append(built[key])
         queries[one.name] = one.query(models[0], models[1], pair)
     return queries
+
+
+def _moved_row(pair: Pair, queries: dict[str, Query], rounds: int) -> Row:
+    asked = {who: query.moved for who, query in queries.items() if query.moved is not None}
+    notes = check_answers(pair, {who: ask() for who, ask in asked.items()})
+    timings = alternate(asked, rounds, SAMPLE_SECONDS)
+    return Row("moved body", pair.name, len(pair.a.faces), timings, notes)
 
 
 def _all_pairs_row(pair: Pair, built: dict[tuple[str, int], object], rounds: int) -> Row:

@@ -31,11 +31,14 @@ class Query:
         collides: any contact?
         triangle_pairs: every intersecting pair, int64 (N, 2), sorted, each once.
         counts: what one yes-or-no cost in tests; the peers' Python faces do not say.
+        moved: B is put where it is anew, from two arrays, and then: any contact? None where it was
+            not written.
     """
 
     collides: Callable[[], bool]
     triangle_pairs: Callable[[], NDArray[np.int64]]
     counts: Callable[[], dict[str, object]]
+    moved: Callable[[], bool] | None = None
 
 
 class Contestant(Protocol):
@@ -66,6 +69,14 @@ def unique_pairs(found: Any) -> NDArray[np.int64]:
     return np.unique(pairs, axis=0)
 
 
+def _arrays(pair: Pair) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return where B is, as two contiguous arrays of doubles."""
+    return (
+        np.ascontiguousarray(pair.rotation, dtype=np.float64),
+        np.ascontiguousarray(pair.translation, dtype=np.float64),
+    )
+
+
 class Obbtree:
     """The package in this repository."""
 
@@ -85,6 +96,12 @@ class Obbtree:
         pose = obbcli.Pose(rotation=pair.rotation, translation=pair.translation)
         a, b = obbcli.Body(model_a), obbcli.Body(model_b, pose=pose)
 
+        rotation, translation = _arrays(pair)
+
+        def moved() -> bool:
+            there = obbcli.Body(model_b, obbcli.Pose(rotation, translation))
+            return obbcli.collide(a, there).collides
+
         def counts() -> dict[str, object]:
             stats = obbcli.collide(a, b).stats
             return {"box tests": stats.box_tests, "triangle tests": stats.triangle_tests}
@@ -93,6 +110,7 @@ class Obbtree:
             collides=lambda: obbcli.collide(a, b).collides,
             triangle_pairs=lambda: obbcli.triangle_pairs(a, b),
             counts=counts,
+            moved=moved,
         )
 
     def nbytes(self, model: Any) -> int | None:
@@ -134,10 +152,17 @@ class Fcl:
             fcl.collide(a, b, many, result)
             return unique_pairs((contact.b1, contact.b2) for contact in result.contacts)
 
+        rotation, translation = _arrays(pair)
+
+        def moved() -> bool:
+            b.setTransform(fcl.Transform(rotation, translation))
+            return bool(fcl.collide(a, b, one, fcl.CollisionResult()) > 0)
+
         return Query(
             collides=lambda: fcl.collide(a, b, one, fcl.CollisionResult()) > 0,
             triangle_pairs=triangle_pairs,
             counts=dict,
+            moved=moved,
         )
 
     def nbytes(self, model: Any) -> int | None:  # noqa: ARG002
@@ -187,7 +212,16 @@ class Coal:
             contacts = map(result.getContact, range(result.numContacts()))
             return unique_pairs((contact.b1, contact.b2) for contact in contacts)
 
-        return Query(collides=lambda: ask(one), triangle_pairs=triangle_pairs, counts=dict)
+        rotation, translation = _arrays(pair)
+
+        def moved() -> bool:
+            result.clear()
+            there = coal.Transform3s(rotation, translation)
+            return bool(coal.collide(model_a, rest, model_b, there, one, result) > 0)
+
+        return Query(
+            collides=lambda: ask(one), triangle_pairs=triangle_pairs, counts=dict, moved=moved
+        )
 
     def nbytes(self, model: Any) -> int | None:
         """Return what the model reports."""

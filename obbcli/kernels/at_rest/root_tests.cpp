@@ -82,14 +82,17 @@ bool are_apart(const RootBox& a, const RootBox& b) {
                box.half_extents.y * std::fabs(dot(axis, box.axes[1])) +
                box.half_extents.z * std::fabs(dot(axis, box.axes[2]));
     };
-    bool is_apart = false;
     for (const RootBox* box : {&a, &b}) {
+        // A box at a time, as which of its axes separates is as good as random.
+        bool is_apart = false;
         for (const Vec3& axis : box->axes) {
-            // Without branches: which axis separates is as good as random.
             is_apart |= std::fabs(dot(axis, d)) > radius(a, axis) + radius(b, axis) + margin;
         }
+        if (is_apart) {
+            return true;
+        }
     }
-    return is_apart;
+    return false;
 }
 
 } // namespace obb

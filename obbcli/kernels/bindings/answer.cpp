@@ -66,7 +66,10 @@ template <Field kField>
 PyObject* field_of(PyObject* self, void*) try {
     PyObject*& kept = cast(self)->fields[kField];
     if (kept == nullptr) {
-        kept = made(cast(self)->found, kField).release().ptr();
+        nb::object value = made(cast(self)->found, kField);
+        if (kept == nullptr) { // else another thread was sooner
+            kept = value.release().ptr();
+        }
     }
     Py_INCREF(kept);
     return kept;

@@ -43,7 +43,7 @@ struct PlacedRef {
 // ---- Answers that need no more than numbers
 
 struct AtRestFound {
-    bool is_complete = true, is_by_boxes = false, has_witness = false;
+    bool is_complete = false, is_by_boxes = false, has_witness = false;
     std::int64_t triangle_a = 0, triangle_b = 0;
     double error_bound = 0;
     double load_seconds = 0, seconds = 0;
@@ -66,7 +66,7 @@ inline std::array<std::uint64_t, 9> all_counts(const obb::WalkCounts& counts, co
 
 // The first few pops of a question about bodies of constant velocities.
 struct MovingAsked {
-    bool is_apart; // for the whole duration, proven
+    bool is_apart = false; // for the whole duration, proven
     AtRestFound found;
     nb::tuple queries; // elsewhere: at t = 0, of the motion or None, and whether all is answered
 };

@@ -155,7 +155,10 @@ PyObject* seen_once(PyObject*& kept, std::span<const double> numbers,
                     std::initializer_list<std::size_t> shape) try {
     if (kept == nullptr) {
         std::vector<double> copy(numbers.begin(), numbers.end());
-        kept = nb::cast(owned<Array>(std::move(copy), shape)).release().ptr();
+        nb::object array = nb::cast(owned<Array>(std::move(copy), shape));
+        if (kept == nullptr) { // else another thread was sooner
+            kept = array.release().ptr();
+        }
     }
     Py_INCREF(kept);
     return kept;

@@ -142,7 +142,8 @@ AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& lim
     AtRestFound found;
     obb::WalkCounts counts;
     counts.box_tests = 1; // that of the roots
-    if (!obb::are_apart(a.root, b.root)) {
+    found.is_complete = obb::are_apart(a.root, b.root);
+    if (!found.is_complete) {
         obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
         found.is_complete = run(query, brief_pops(*a.tree, *b.tree), limits, found.seconds);
         found.is_by_boxes = query.is_by_boxes();

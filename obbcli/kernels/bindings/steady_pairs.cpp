@@ -144,6 +144,7 @@ MovingAsked ask_moving(const Placed& a, const obb::Screw& screw_a, const Placed&
         query.advance(std::min(brief_pops(*a.tree, *b.tree), options.limits.max_pops));
     asked.is_apart = is_finished && !query.is_contact() && !query.has_given_up();
     if (asked.is_apart) {
+        asked.found.is_complete = true;
         asked.found.counts = all_counts(query.counts(), *a.tree, *b.tree);
     } else {
         const nb::object queries = as_python(query, a, b);
