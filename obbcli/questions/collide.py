@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from obbcli.questions.first_contact import Queries
 
 
-def _going_on(a: Body, b: Body, queries: Queries) -> Collision:
+def _going_on(a: Body | Shape, b: Body | Shape, queries: Queries) -> Collision:
     from obbcli.questions.first_contact import going_on
 
     return collision_of(going_on(a, b, queries, any_contact=True))

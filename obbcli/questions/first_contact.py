@@ -265,11 +265,13 @@ class Query:
         return self._pair.with_parts(answer, (answer.triangle_a, answer.triangle_b))
 
 
-def going_on(a: Body, b: Body, queries: Queries, *, any_contact: bool = False) -> FirstContact:
+def going_on(
+    a: Body | Shape, b: Body | Shape, queries: Queries, *, any_contact: bool = False
+) -> FirstContact:
     """Return the answer to a question about two bodies, as they are, that the kernels have begun.
 
     Args:
-        a: of constant velocities, with its tree.
+        a: a body of constant velocities with its tree, or a tree.
         b: as `a`.
         queries: those of the kernels: about t = 0, about the motion or None, and whether all is
             answered.

@@ -88,7 +88,7 @@ def test_function_is_bound_where_it_is_a_method(tree):
 
 
 @pytest.mark.parametrize("function", [quick, first_contact])
-@pytest.mark.parametrize("moves", ["neither", "one", "both", "turning", "alike"])
+@pytest.mark.parametrize("moves", ["neither", "one", "both", "turning", "alike", "none of a tree"])
 def test_answers_are_those_of_the_function(tree, function, moves):
     rng = np.random.default_rng(len(moves))
     statuses = set()
@@ -104,6 +104,8 @@ def test_answers_are_those_of_the_function(tree, function, moves):
         if moves == "alike":
             motions[1] = motions[0]
         a, b = (Body(tree, pose, motion) for pose, motion in zip(poses, motions, strict=True))
+        if moves == "none of a tree":
+            a, b = (tree, b) if number % 2 else (a, tree)
 
         found, asked = function(a, b), function.__wrapped__(a, b)
 

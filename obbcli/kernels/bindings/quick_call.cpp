@@ -36,8 +36,9 @@ PyObject* at_rest_name = nullptr;
 
 CallObject* cast(PyObject* self) { return reinterpret_cast<CallObject*>(self); }
 
-// A body at rest whose tree is there, or what else says that it is one, as trees do; else null.
-PlacedObject* resting(PyObject* object, nb::object& owner) {
+// A body whose tree is there, at rest or of constant velocities, or what says that it is one at
+// rest, as trees do; else null.
+PlacedObject* askable(PyObject* object, nb::object& owner) {
     PlacedObject* placed = as_placed(object);
     if (placed == nullptr) {
         owner = nb::steal(PyObject_GetAttr(object, at_rest_name));
@@ -50,16 +51,9 @@ PlacedObject* resting(PyObject* object, nb::object& owner) {
         }
         placed = as_placed(owner.ptr());
     }
-    return placed != nullptr && placed->here.tree != nullptr && placed->rests ? placed : nullptr;
-}
-
-// A body with constant velocities whose tree is there; else null.
-PlacedObject* steady(PyObject* object) {
-    PlacedObject* placed = as_placed(object);
-    return placed != nullptr && placed->shape != nullptr && placed->here.tree != nullptr &&
-                   placed->is_steady
-               ? placed
-               : nullptr;
+    const bool is_askable =
+        placed != nullptr && placed->here.tree != nullptr && (placed->rests || placed->is_steady);
+    return is_askable ? placed : nullptr;
 }
 
 nb::object called(PyObject* function, std::initializer_list<PyObject*> args) {
@@ -79,31 +73,32 @@ nb::object answer_told(const CallObject& self, PyObject* a, PyObject* b, const A
     return self.told == Py_None ? answer : called(self.told, {a, b, answer.ptr()});
 }
 
-nb::object moving_answer(const CallObject& self, PlacedObject& a, PlacedObject& b) {
-    auto* const first = reinterpret_cast<PyObject*>(&a);
-    auto* const second = reinterpret_cast<PyObject*>(&b);
-    const nb::object screw_a = called(self.screw_of, {first, a.shape});
-    const nb::object screw_b = called(self.screw_of, {second, b.shape});
-    const MovingAsked asked = ask_moving(a.here, nb::cast<const obb::Screw&>(screw_a), b.here,
-                                         nb::cast<const obb::Screw&>(screw_b), self.options);
-    if (asked.is_apart) {
-        return answer_told(self, first, second, asked.found);
+obb::Screw screw_of(const CallObject& self, PlacedObject& body) {
+    if (body.rests) {
+        return {};
     }
-    return called(self.going_on, {first, second, asked.queries.ptr()});
+    return nb::cast<obb::Screw>(
+        called(self.screw_of, {reinterpret_cast<PyObject*>(&body), body.shape}));
 }
 
 // Null without an error where the function is to answer, which says too what is wrong.
 PyObject* quick_answer(const CallObject& self, PyObject* first, PyObject* second) try {
     nb::object owner_a, owner_b;
-    const PlacedObject* a = resting(first, owner_a);
-    const PlacedObject* b = a == nullptr ? nullptr : resting(second, owner_b);
-    if (b != nullptr) {
+    PlacedObject* a = askable(first, owner_a);
+    PlacedObject* b = a == nullptr ? nullptr : askable(second, owner_b);
+    if (b == nullptr) {
+        return nullptr;
+    }
+    if (a->rests && b->rests) {
         const AtRestFound found = ask_at_rest(a->here, b->here, self.options.limits);
         return answer_told(self, first, second, found).release().ptr();
     }
-    PlacedObject* moving = steady(first);
-    PlacedObject* other = moving == nullptr ? nullptr : steady(second);
-    return other == nullptr ? nullptr : moving_answer(self, *moving, *other).release().ptr();
+    const obb::Screw screw_a = screw_of(self, *a), screw_b = screw_of(self, *b);
+    const MovingAsked asked = ask_moving(a->here, screw_a, b->here, screw_b, self.options);
+    const nb::object answer = asked.is_apart
+                                  ? answer_told(self, first, second, asked.found)
+                                  : called(self.going_on, {first, second, asked.queries.ptr()});
+    return nb::object(answer).release().ptr();
 } catch (nb::python_error& error) {
     error.restore();
     return nullptr;
