@@ -60,7 +60,7 @@ class Scene:
     Example:
         >>> for found in Scene.load("sample_meshes/cell.toml").first_contacts():
         ...     print(found.body_a, found.body_b, found.time)
-        gear pinion 0.05679926621001278
+        gear pinion 0.05679926619329175
         bolt nut 0.18555021222034207
         left finger workpiece 0.5
         right finger workpiece 0.5

@@ -48,6 +48,7 @@ LIMITS: dict[str, Counts] = {
     "first_contact both turn": (246, 1278, 56, 682),
     "first_contact turns inside": (6481, 150704, 0, 74940),
     "collide both turn": (75, 310, 0, 145),
+    "first_contact gears turn freely": (1708, 54397, 14062, 43412),
 }
 
 REST = Motion()
@@ -84,6 +85,16 @@ def _collide_moving(name: str, motion_a: Motion, motion_b: Motion) -> Counts:
     return _of(obbcli.collide(*bodies(name, motion_a, motion_b), 1.0).stats)
 
 
+def _gears() -> Counts:
+    """Wheels that glide along each other, on two axes, and never touch."""
+    wheels = "sample_meshes/gear.stl", "sample_meshes/pinion.stl"
+    a, b = (
+        Body(ObbTree.build(wheel), motion=Motion(None, (0, 0, spin)))
+        for wheel, spin in zip(wheels, (3, -6), strict=True)
+    )
+    return _of(obbcli.first_contact(a, b, 0.2).stats)
+
+
 def _all_pairs(name: str, threads: int = 1) -> Counts:
     a, b = bodies(name)
     trees = [body.shape for body in (a, b)]
@@ -111,6 +122,7 @@ QUESTIONS: dict[str, Callable[[], Counts]] = {
     "first_contact both turn": lambda: _first_contact("gap_1e-1", TURNING, COUNTER),
     "first_contact turns inside": lambda: _first_contact("nested", REST, TURNING),
     "collide both turn": lambda: _collide_moving("gap_1e-1", COUNTER, TURNING),
+    "first_contact gears turn freely": _gears,
 }
 
 

@@ -12,8 +12,10 @@ namespace {
 
 // Boxes this near, of their own size, are said to meet when they cannot be told apart any longer.
 constexpr double kAllButMeeting = 0x1p-20;
-// A pair is opened for as long as its boxes take to move by their own size, times this.
-constexpr double kWindow = 2;
+// A pair is opened for as long as its boxes take to move by their own size, times this: less once
+// so many pairs of boxes were tested that the bodies must glide along each other.
+constexpr double kWindow = 2, kWindowOfGliding = 0.5;
+constexpr std::uint64_t kGliding = 8192;
 // Triangles of a leaf, which may hold a whole mesh, that are looked at in one pop.
 constexpr std::uint32_t kTrianglesAPop = 64;
 
@@ -27,7 +29,8 @@ double ContactQuery::window(const Entry& entry) const {
     const double size_a = MovingPair::size_of(pair_.a(), entry.a),
                  size_b = MovingPair::size_of(pair_.b(), entry.b);
     const double turning = size_a * pair_.a().spin().speed() + size_b * pair_.b().spin().speed();
-    return kWindow * (size_a + size_b) / (norm_1(velocity) + turning);
+    const double factor = counts_.box_tests < kGliding ? kWindow : kWindowOfGliding;
+    return factor * (size_a + size_b) / (norm_1(velocity) + turning);
 }
 
 // Bodies that slide along each other would keep every pair open that was ever near. So a pair is
