@@ -136,7 +136,7 @@ sanitize: .build/sanitize/installed sanitize-fuzz .venv/test-tools
 # where Clang is at hand, else by a driver of our own, guided by GCC's coverage.
 FUZZ_SECONDS ?= 60
 FUZZ := tests/fuzz
-FUZZ_TARGETS := tree_file first_contact predicates screw_images
+FUZZ_TARGETS := tree_file first_contact predicates screw_images box_lanes
 FUZZ_SOURCES := $(wildcard $(FUZZ)/*.cpp $(FUZZ)/*.hpp)
 FUZZ_FLAGS := -std=c++20 -O2 -g1 -ffp-contract=off -Wno-psabi -I$(KERNELS) -I$(FUZZ)
 SANITIZED := -fsanitize=address,undefined -fno-sanitize-recover=undefined
@@ -148,6 +148,7 @@ fuzz-smoke: .build/fuzz/plain .venv/test-tools
 	.build/fuzz/plain/first_contact -runs=2000 $(FUZZ)/corpus/first_contact
 	.build/fuzz/plain/predicates -runs=300 $(FUZZ)/corpus/predicates
 	.build/fuzz/plain/screw_images -runs=20000 $(FUZZ)/corpus/screw_images
+	.build/fuzz/plain/box_lanes -runs=20000 $(FUZZ)/corpus/box_lanes
 	$(BIN)/python $(FUZZ)/run.py --runs 200
 
 sanitize-fuzz: .build/fuzz/sanitized

@@ -78,9 +78,16 @@ def motions() -> dict[str, bytes]:
     return {name: bytes([int(name.rpartition("_")[2])]) + data[1:] for name, data in seeds.items()}
 
 
+def boxes() -> dict[str, bytes]:
+    """Return eight boxes in two frames, one for each way of reading the bytes."""
+    random = np.random.default_rng(3)
+    return {f"options_{k}": bytes([k]) + random.bytes(400) for k in range(16)}
+
+
 def main() -> None:
     """Write them all."""
     targets = {"tree_file": tree_files(), "predicates": shapes(), "first_contact": motions()}
+    targets["box_lanes"] = boxes()
     for target, seeds in targets.items():
         folder = CORPUS / target
         folder.mkdir(parents=True, exist_ok=True)

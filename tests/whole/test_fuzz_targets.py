@@ -6,7 +6,7 @@ import pytest
 from fuzz.run import FOLDER, corpus, targets
 
 TARGETS = targets()
-IN_CPP = {"first_contact", "predicates", "screw_images", "tree_file"}
+IN_CPP = {"box_lanes", "first_contact", "predicates", "screw_images", "tree_file"}
 
 
 @pytest.mark.parametrize("name", TARGETS)

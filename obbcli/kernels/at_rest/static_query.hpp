@@ -1,8 +1,8 @@
 // Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
 #pragma once
 
+#include "descent/box_lanes.hpp"
 #include "descent/limits.hpp"
-#include "descent/placed_boxes.hpp"
 #include "descent/posed_tree.hpp"
 #include "primitives/predicates.hpp"
 
@@ -61,39 +61,52 @@ class StaticQuery {
   private:
     struct Pair {
         NodeRef a, b;
-        std::uint32_t next = 0; // of a leaf that is opened, the first triangle not yet pushed
     };
-    // Up to two parts of a node: its children, or the node itself.
-    struct Parts {
-        std::array<NodeRef, 2> refs;
-        std::size_t count;
+    // A pair about to be opened: into the children of either node, or the node as it is.
+    struct Opening {
+        Pair pair;
+        const Node *node_a, *node_b; // where opened
+        unsigned lanes;              // the pairs of parts there are, a bit each by kOfA and kOfB
+        unsigned triangle_lanes;     // those of them with a triangle
     };
 
-    [[nodiscard]] bool is_open(const PosedTree& body, const NodeRef& ref,
-                               std::uint32_t max_depth) const;
-    [[nodiscard]] static double size_of(const PosedTree& body, const NodeRef& ref);
-    [[nodiscard]] static Parts parts_of(const PosedTree& body, const NodeRef& ref, bool is_opened);
-    void visit();
-    void open(const Pair& pair, bool opens_a, bool opens_b);
-    void open_leaf(bool opens_a);
-    [[nodiscard]] bool may_meet(const Obb* box_a, const Triangle& a, const Obb* box_b,
-                                const Triangle& b);
+    void begin();
+    void pop();
+    void pop_alone();
+    void visit(const Pair& pair);
+    [[nodiscard]] const Node* box_to_open(const PosedTree& body, const NodeRef& ref,
+                                          std::uint32_t max_depth) const;
+    void wait_to_open(const Pair& pair, const Node* node_a, const Node* node_b);
+    void open_waiting();
+    [[nodiscard]] static Pair part_of(const Opening& opening, std::size_t lane);
+    [[nodiscard]] unsigned meeting_in_doubles(const Opening& opening, unsigned lanes) const;
+    [[nodiscard]] unsigned meeting_triangles(const Opening& opening, float* nearness);
+    void push(const Pair& pair);
+    void push_meeting(const Opening& opening, unsigned meeting, const float* nearness);
+    void push_in_order(const Opening& opening, unsigned meeting, const float* nearness);
+    [[nodiscard]] bool may_triangle_meet(const NodeRef& ref_a, const NodeRef& ref_b,
+                                         float& nearness) const;
+    void open_leaf(const Pair& pair, bool opens_a);
     bool keep_if_intersecting(const NodeRef& ref_a, const NodeRef& ref_b,
                               const TriangleVerdict& verdict);
     void meet(const Pair& pair);
-    [[nodiscard]] static bool tests_crowds(const StaticQueryOptions& options);
     [[nodiscard]] bool is_crowd(const Pair& pair) const;
     void meet_all(const Pair& pair);
     [[nodiscard]] double distance_bound(const Pair& pair) const;
+    void stop();
     void finish();
 
     PosedTree a_, b_;
     StaticQueryOptions options_;
-    bool tests_crowds_;
+    bool is_coarse_; // boxes may stand for triangles
     RoundingBound bound_{};
     int exponent_ = 0;
-    LaneFrame frame_{};
+    EightFrame frame_;
     std::vector<Pair> stack_;
+    // Popped, and opened with the next one: there are none while the stack is empty.
+    std::array<Opening, 2> waiting_;
+    EightNodes waiting_nodes_;
+    std::size_t waiting_count_ = 0;
     std::vector<TrianglePair> pairs_;
     bool is_by_boxes_ = false;
     bool is_finished_ = false;

@@ -2,10 +2,7 @@
 
 namespace obb {
 
-namespace {
-
-[[gnu::always_inline]] inline void place(const LaneFrame& frame, const FourNodes& nodes,
-                                         BasicObb<Four>& boxes) {
+OBB_WIDE void place_boxes(const LaneFrame& frame, const FourNodes& nodes, BasicObb<Four>& boxes) {
     const auto lanes = [&](auto value) {
         return Four{value(*nodes[0]), value(*nodes[1]), value(*nodes[2]), value(*nodes[3])};
     };
@@ -27,19 +24,6 @@ namespace {
                                frame.node_scale * lanes([](const Node& n) { return n.center.y; }),
                                frame.node_scale * lanes([](const Node& n) { return n.center.z; })};
     boxes.center = turned(center) + frame.shift;
-}
-
-} // namespace
-
-OBB_WIDE void place_boxes(const LaneFrame& frame, const FourNodes& nodes, BasicObb<Four>& boxes) {
-    place(frame, nodes, boxes);
-}
-
-OBB_WIDE unsigned meeting_pairs(const LaneFrame& frame, const FourNodes& nodes,
-                                const RoundingBound& bound, BasicObb<Four>& boxes) {
-    place(frame, nodes, boxes);
-    const BasicObb<Four> a = shuffled<0, 0, 1, 1>(boxes), b = shuffled<2, 3, 2, 3>(boxes);
-    return bits_of(~are_separated(a, b, bound));
 }
 
 } // namespace obb

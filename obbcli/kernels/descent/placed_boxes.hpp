@@ -22,12 +22,4 @@ using FourNodes = std::array<const Node*, 4>;
 
 void place_boxes(const LaneFrame& frame, const FourNodes& nodes, BasicObb<Four>& boxes);
 
-// Which of the four pairs of an A and a B are not proven apart: bit 2 i + j for A's i-th, B's j-th.
-// The placed boxes are left in `boxes`.
-[[nodiscard]] unsigned meeting_pairs(const LaneFrame& frame, const FourNodes& nodes,
-                                     const RoundingBound& bound, BasicObb<Four>& boxes);
-
-// A box that stands where there is none.
-inline constexpr Node kNoBox{{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0, 0, 0};
-
 } // namespace obb

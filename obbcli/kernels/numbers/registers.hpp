@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -75,6 +76,11 @@ OBB_REGISTER(double, std::int64_t, 16)
 OBB_REGISTER(float, std::int32_t, 16)
 OBB_REGISTER(double, std::int64_t, 32)
 OBB_REGISTER(float, std::int32_t, 32)
+OBB_REGISTER(float, std::int32_t, 8)         // what two doubles become
+OBB_REGISTER(std::int64_t, std::int64_t, 16) // places, for shuffles
+OBB_REGISTER(std::int32_t, std::int32_t, 16)
+OBB_REGISTER(std::int64_t, std::int64_t, 32)
+OBB_REGISTER(std::int32_t, std::int32_t, 32)
 #undef OBB_REGISTER
 
 template <typename Number, std::size_t kCount_, std::size_t kBytes>
@@ -85,6 +91,8 @@ struct Lanes {
     static constexpr std::size_t kCount = kCount_;
     static constexpr std::size_t kRegisters = kCount * sizeof(Number) / kBytes;
     static constexpr std::size_t kInRegister = kBytes / sizeof(Number);
+    static constexpr auto kAllButSign = std::numeric_limits<
+        std::conditional_t<sizeof(Number) == 8, std::int64_t, std::int32_t>>::max();
 
     Register parts[kRegisters]{};
 
@@ -194,7 +202,14 @@ struct Lanes {
     }
     friend OBB_INLINE Lanes lower(const Lanes& a, const Lanes& b) { return select(a < b, a, b); }
     friend OBB_INLINE Lanes upper(const Lanes& a, const Lanes& b) { return select(a > b, a, b); }
-    friend OBB_INLINE Lanes magnitude(const Lanes& a) { return upper(a, Lanes{} - a); }
+    friend OBB_INLINE Lanes magnitude(const Lanes& a) {
+        Lanes result;
+        for (std::size_t r = 0; r < kRegisters; ++r) {
+            const RegisterMask bits = reinterpret_cast<RegisterMask>(a.parts[r]);
+            result.parts[r] = reinterpret_cast<Register>(bits & (RegisterMask{} + kAllButSign));
+        }
+        return result;
+    }
     friend OBB_INLINE Lanes root_of(const Lanes& a) {
         Lanes result;
         for (std::size_t r = 0; r < kRegisters; ++r) {

@@ -23,6 +23,9 @@ struct alignas(64) Node {
 };
 static_assert(sizeof(Node) == 64);
 
+// A box that stands where there is none.
+inline constexpr Node kNoBox{{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0, 0, 0};
+
 // Axes of the box, as rows. This function *defines* the box: containment is proven for its results.
 template <typename Real>
 [[nodiscard]] inline std::array<Vector3<Real>, 3> axes_of_quaternion(Real w, Real x, Real y,
