@@ -106,8 +106,8 @@ class QuickQuestion(NamedTuple):
         any_contact: whether any proof of contact will do, not of the first.
         screw_of: returns how a body moves, given the body and its tree.
         going_on: answers a question about moving bodies that the kernels began and did not find
-            apart, given the bodies and the kernels' queries: about t = 0, about the motion or None,
-            and whether all is answered.
+            apart, nor in contact at t = 0 where any contact will do, given the bodies and the
+            kernels' queries: about t = 0, about the motion or None, and whether all is answered.
         told: returns the answer, given the bodies and what was found, an `AtRestAnswer`, of bodies
             at rest or apart. None: what was found is the answer.
     """

@@ -93,7 +93,8 @@ def test_answers_are_those_of_the_function(tree, function, moves):
     rng = np.random.default_rng(len(moves))
     statuses = set()
     for number in range(40):
-        poses = [Pose(rng.normal(size=3), 30 * rng.normal(size=3)) for _ in range(2)]
+        reach = 3 if number % 3 == 0 else 30  # near ones meet at t = 0
+        poses = [Pose(rng.normal(size=3), reach * rng.normal(size=3)) for _ in range(2)]
         motions = [Motion(40 * rng.normal(size=3)), Motion(40 * rng.normal(size=3))]
         if moves in {"neither", "one"}:
             motions[number % 2] = Motion()
@@ -112,7 +113,8 @@ def test_answers_are_those_of_the_function(tree, function, moves):
         assert type(found) is type(asked)
         assert without_seconds(found) == without_seconds(asked)
         statuses.add(found.status)
-    assert len(statuses) > 1
+    assert statuses >= {Status.SEPARATED, Status.OVERLAP_AT_START}
+    assert Status.CONTACT in statuses or moves in {"neither", "alike"}
 
 
 @pytest.mark.parametrize("function", [quick, first_contact])

@@ -5,6 +5,7 @@
 
 #include "bindings/module.hpp"
 
+#include "at_rest/static_query.hpp"
 #include "in_motion/contact_query.hpp"
 
 // ---- Poses
@@ -52,9 +53,18 @@ struct AtRestFound {
 
 inline std::array<std::uint64_t, 9> all_counts(const obb::WalkCounts& counts, const Tree& a,
                                                const Tree& b) {
-    return {counts.box_tests,      counts.triangle_tests, counts.exact_triangle_tests,
-            counts.pops,           counts.image_tests,    a.node_count(),
-            b.node_count(),        a.possible_node_count, b.possible_node_count};
+    return {counts.box_tests, counts.triangle_tests, counts.exact_triangle_tests,
+            counts.pops,      counts.image_tests,    a.node_count(),
+            b.node_count(),   a.possible_node_count, b.possible_node_count};
+}
+
+// Takes over the first pair of triangles that a query found, if it found any.
+inline void set_witness(AtRestFound& found, std::span<const obb::TrianglePair> pairs) {
+    found.has_witness = !pairs.empty();
+    if (found.has_witness) {
+        found.triangle_a = pairs.front().a;
+        found.triangle_b = pairs.front().b;
+    }
 }
 
 // An answer of the class that was made known; a new reference, null with an error set.
@@ -66,7 +76,9 @@ inline std::array<std::uint64_t, 9> all_counts(const obb::WalkCounts& counts, co
 
 // The first few pops of a question about bodies of constant velocities.
 struct MovingAsked {
-    bool is_apart = false; // for the whole duration, proven
+    // Whether that is all: they are proven apart for the whole duration, or they meet at t = 0 and
+    // no more than that is asked.
+    bool is_told = false;
     AtRestFound found;
     nb::tuple queries; // elsewhere: at t = 0, of the motion or None, and whether all is answered
 };

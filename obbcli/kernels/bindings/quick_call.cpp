@@ -95,7 +95,7 @@ PyObject* quick_answer(const CallObject& self, PyObject* first, PyObject* second
     }
     const obb::Screw screw_a = screw_of(self, *a), screw_b = screw_of(self, *b);
     const MovingAsked asked = ask_moving(a->here, screw_a, b->here, screw_b, self.options);
-    const nb::object answer = asked.is_apart
+    const nb::object answer = asked.is_told
                                   ? answer_told(self, first, second, asked.found)
                                   : called(self.going_on, {first, second, asked.queries.ptr()});
     return nb::object(answer).release().ptr();

@@ -148,11 +148,7 @@ AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& lim
         found.is_complete = run(query, brief_pops(*a.tree, *b.tree), limits, found.seconds);
         found.is_by_boxes = query.is_by_boxes();
         found.error_bound = query.error_bound();
-        if (const auto pairs = query.pairs(); !pairs.empty()) {
-            found.has_witness = true;
-            found.triangle_a = pairs.front().a;
-            found.triangle_b = pairs.front().b;
-        }
+        set_witness(found, query.pairs());
         counts = query.counts();
     }
     found.counts = all_counts(counts, *a.tree, *b.tree);

@@ -142,9 +142,13 @@ MovingAsked ask_moving(const Placed& a, const obb::Screw& screw_a, const Placed&
     obb::SteadyQuery query(moving(a, screw_a), moving(b, screw_b), options);
     const bool is_finished =
         query.advance(std::min(brief_pops(*a.tree, *b.tree), options.limits.max_pops));
-    asked.is_apart = is_finished && !query.is_contact() && !query.has_given_up();
-    if (asked.is_apart) {
+    const bool is_apart = is_finished && !query.is_contact() && !query.has_given_up();
+    const bool meets_at_start =
+        options.any_contact && query.at_start().is_contact() && !query.at_start().is_by_boxes();
+    asked.is_told = is_apart || meets_at_start;
+    if (asked.is_told) {
         asked.found.is_complete = true;
+        set_witness(asked.found, query.at_start().pairs());
         asked.found.counts = all_counts(query.counts(), *a.tree, *b.tree);
     } else {
         const nb::object queries = as_python(query, a, b);
