@@ -38,6 +38,12 @@ inline constexpr std::uint32_t kAllAxes = (1u << kAxisCount) - 1;
                                          : 6u + 3u * id.a + id.b;
 }
 
+// Of axes in a plane, those that are known not to separate, a bit each above kAllAxes: A's edges,
+// then B's. A set without these bits has them all.
+[[nodiscard]] constexpr std::uint32_t settled_in_plane(std::size_t edge) {
+    return 1U << (kAxisCount + edge);
+}
+
 // What a projection on L says in doubles: the shapes' projections meet at time t if and only if
 // low <= speed * t <= high, where for every t in [0, duration] the true low - speed * t and
 // high - speed * t are within `error` of these. L itself need not be known any better.

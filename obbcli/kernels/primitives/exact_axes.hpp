@@ -89,7 +89,7 @@ bool visit_solid_axes(const ExactShape<N>& a, const ExactShape<N>& b, std::uint3
 
 template <std::size_t N, typename Visit>
 bool visit_plane_axes(const ExactShape<N>& a, const ExactShape<N>& b, const WideVec<2 * N>& normal,
-                      Visit&& visit) {
+                      std::uint32_t wanted, Visit&& visit) {
     if (visit(AxisId{AxisKind::kPlane}, normal)) {
         return true;
     }
@@ -98,7 +98,8 @@ bool visit_plane_axes(const ExactShape<N>& a, const ExactShape<N>& b, const Wide
         const WideVec<N>& edge = of_a ? a.edges[k] : b.edges[k - 3u];
         const AxisId id{of_a ? AxisKind::kEdgeA : AxisKind::kEdgeB, std::uint8_t(k % 3),
                         std::uint8_t(k % 3)};
-        if (!edge.is_zero() && visit(id, cross(normal, edge))) {
+        const bool is_settled = (wanted & settled_in_plane(k)) != 0;
+        if (!is_settled && !edge.is_zero() && visit(id, cross(normal, edge))) {
             return true;
         }
     }
@@ -129,7 +130,8 @@ bool visit_line_axes(const WideSpan<N>& span, Visit&& visit) {
 // takes (AxisId, WideVec) and returns true to stop; so does the function.
 // Source: Minkowski's difference of A and B is a polytope whose edges are parallel to theirs, so
 // these are the normals of its facets within its affine hull, and the normals of the hull.
-// Of face and edge-edge axes only those whose axis_index is a bit of `wanted` are visited.
+// Of face and edge-edge axes only those whose axis_index is a bit of `wanted` are visited, of axes
+// in a plane those that it does not have as settled.
 template <std::size_t N, typename Visit>
 bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, const WideSpan<N>& span,
                 std::uint32_t wanted, Visit&& visit) {
@@ -137,13 +139,14 @@ bool visit_axes(const ExactShape<N>& a, const ExactShape<N>& b, const WideSpan<N
     case 3:
         return detail::visit_solid_axes(a, b, wanted, visit);
     case 2:
-        return detail::visit_plane_axes(a, b, span.normal, visit);
+        return detail::visit_plane_axes(a, b, span.normal, wanted, visit);
     default:
         return detail::visit_line_axes(span, visit);
     }
 }
 
-// Whether the closed shapes have a point in common, when no axis outside `unsure` separates them.
+// Whether the closed shapes have a point in common, when no axis outside `unsure` separates them,
+// and none that it has as settled.
 template <std::size_t N>
 [[nodiscard]] bool shapes_intersect(const ExactShape<N>& a, const ExactShape<N>& b,
                                     std::uint32_t unsure) {
