@@ -25,6 +25,7 @@ import bench_formats
 import bench_hostile
 import bench_primitives
 import bench_scene
+import bench_screws
 import bench_static
 import bench_sweep
 import bench_wall
@@ -44,6 +45,7 @@ BENCHES = {
     ),
     "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
     "scene": lambda options: bench_scene.run(options.quick),
+    "screws": lambda options: bench_screws.run(options.quick),
     "sweep": lambda options: bench_sweep.run(options.quick),
     "hostile": lambda options: bench_hostile.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
