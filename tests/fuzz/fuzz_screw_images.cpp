@@ -119,8 +119,13 @@ bool holds(const obb::Image& image, const Point& p, const obb::RelativeScrew& sc
     if (!holds(image.radius, r) || !holds(image.height, p[2])) {
         return false;
     }
-    if (image.is_ring) {
-        return true;
+    bool is_in_profile = true;
+    for (const auto& [n_r, n_z] : kDirections) {
+        is_in_profile = is_in_profile &&
+                        holds(image.profile_along(n_r, n_z, screw.slack), n_r * r + n_z * p[2]);
+    }
+    if (image.is_ring || !is_in_profile) {
+        return is_in_profile;
     }
     const long double angle = std::atan2(p[1], p[0]);
     const long double turns = std::round((image.angle.middle() - angle) / (2 * kPi));

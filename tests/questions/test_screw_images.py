@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from movers.answers import as_body
 from movers.on_screws import KINDS, random_on_screw
-from movers.turned import spindle_and_housing
+from movers.screw_ways import AT_ONCE, NEVER, ask, is_apart_at_start
 from oracles.screw_sampling import sampled_overlap
 
 import obbcli
-from obbcli import Accuracy, Body, Mesh, Motion, ObbTree, Pose, Status, first_contact, kernels
-from obbcli.answers.counts import Counts
-from obbcli.questions.border import moving_query, static_query
+from obbcli import Accuracy, Body, Motion, ObbTree, Pose, Status, first_contact
+from obbcli.questions.border import moving_query
 from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
@@ -23,48 +22,10 @@ if TYPE_CHECKING:
 
     from obbcli import FirstContact
 
-AT_ONCE, NEVER = 0, 2**63
-MOST_POPS = 100_000
 FULL_TURN = 2 * math.pi
 BOLT, NUT = "sample_meshes/bolt.ply", "sample_meshes/nut.obj"
 # What steps take for one turn of the nut: three million pairs of boxes, and a million pops.
 FEW = 200_000
-
-
-class Found(NamedTuple):
-    """What one way says of a question."""
-
-    status: str
-    low: float
-    contact: kernels.Contact | None
-    counts: Counts
-
-    def is_proven(self, clearance: float) -> bool:
-        """Whether contact within the clearance is proven by the end of the bracket."""
-        found = self.contact
-        return found is not None and (
-            found.evidence is kernels.Evidence.INTERSECTING or found.distance <= clearance
-        )
-
-
-def ask(pair: PairQuestion, before: int) -> Found:
-    """Ask the kernels, with images from so many box tests on."""
-    query = moving_query(pair, box_tests_before_screw=before)
-    is_done = False
-    while not is_done and query.counts()[3] < MOST_POPS:
-        is_done = query.advance(MOST_POPS - query.counts()[3])
-    contact = query.contact()
-    status = "contact" if contact else "separated"
-    if not is_done or query.has_given_up:
-        status = "unresolved"
-    return Found(status, query.lower_bound, contact, Counts(*query.counts()))
-
-
-def is_apart_at_start(pair: PairQuestion) -> bool:
-    query = static_query(pair)
-    while not query.advance(MOST_POPS):
-        pass
-    return not query.is_contact
 
 
 @pytest.mark.parametrize("start", range(0, 200, 50))
@@ -171,42 +132,6 @@ def test_nut_of_another_lead_jams_when_steps_say(lead):
     assert steps.low <= images.contact.high
 
 
-@pytest.mark.parametrize("turns", [10.0, 1e6])
-def test_spindle_turns_in_its_housing(turns):
-    shaft, sleeve = (Mesh(*mesh) for mesh in spindle_and_housing(240, 0.1))
-    spinning = Body(shaft, motion=Motion((0, 0, 0), (0, 0, FULL_TURN), (0, 0, 0)))
-
-    answer = first_contact(sleeve, spinning, turns)
-
-    assert answer.status is Status.SEPARATED
-    assert 0 < answer.stats.image_tests < 1000
-
-
-def test_spindle_slides_until_its_collar_meets_the_groove():
-    shaft, sleeve = (Mesh(*mesh) for mesh in spindle_and_housing(240, 0.125))
-    sliding = Body(shaft, motion=Motion((0, 0, 0.0625), (0, 0, FULL_TURN), (0, 0, 0)))
-
-    answer = first_contact(sleeve, sliding, 3.0)
-
-    assert answer.status is Status.CONTACT
-    assert answer.time_bounds is not None
-    low, high = answer.time_bounds
-    assert high is not None
-    assert low <= 2.0 <= high
-    assert high - low < 1e-6
-    assert answer.stats.pops < FEW
-
-
-@pytest.mark.parametrize("steps", [12, 24])
-def test_coarse_facets_gain_nothing_and_lose_nothing(steps):
-    play = 9 * (1 / math.cos(math.pi / steps) - 1) + 0.05
-    shaft, sleeve = (Mesh(*mesh) for mesh in spindle_and_housing(steps, play))
-    spinning = Body(shaft, motion=Motion((0, 0, 0), (0, 0, FULL_TURN), (0, 0, 0)))
-    pair = PairQuestion.of(sleeve, spinning, 3.0)
-
-    assert ask(pair, AT_ONCE).status == "separated"
-
-
 @pytest.mark.parametrize("clearance", [0.01, 0.05])
 def test_clearance_less_than_the_play_is_kept(clearance):
     answer = nut_on_bolt(5.0, clearance=clearance)
@@ -284,24 +209,6 @@ def test_slack_at_its_limit_parts_the_ways(drift, by_images):
 
     assert (found.counts.image_tests > 0) is by_images
     assert found.status == ("separated" if by_images else "unresolved")  # steps take more pops
-
-
-@pytest.mark.parametrize("exponent", [-1000, -1060, 900])
-def test_scale_changes_nothing(exponent):
-    shaft, sleeve = spindle_and_housing(64, 0.125)
-    bounds = []
-    for power in (0, exponent):
-        scale = 2.0**power
-        a, b = (Mesh(points * scale, faces) for points, faces in (sleeve, shaft))
-        motion = Motion((0, 0, 0.0625 * scale), (0, 0, FULL_TURN), (0, 0, 0))
-        found = ask(PairQuestion.of(a, Body(b, motion=motion), 3.0), AT_ONCE)
-        assert found.counts.image_tests > 0
-        assert found.contact is not None
-        bounds.append((found.contact.low, found.contact.high))
-
-    assert bounds[0][0] <= 2.0 <= bounds[0][1]
-    if exponent > -1060:  # where numbers lose digits, that is another question
-        assert bounds[0] == bounds[1]
 
 
 @pytest.mark.parametrize("far", [1e3, 1e6, 1e9])

@@ -27,7 +27,7 @@ bool ContactQuery::make_images(SliceClock& clock) {
     if (!screw_->make(pair_, lower_bound_, clock)) {
         return false;
     }
-    if (screw_->has_failed()) {
+    if (screw_->has_failed()) { // then steps go on as if nobody had asked
         screw_.reset();
         return true;
     }

@@ -11,6 +11,8 @@ namespace {
 // Images of more would take more than some hundred megabytes.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 21;
 constexpr std::size_t kMostImages = std::size_t{1} << 21;
+// So many pairs of nodes near the axis, for each image, are a crowd.
+constexpr std::size_t kCrowd = 4;
 
 std::size_t triangle_count(const MovingPair& pair) {
     return std::size_t{pair.a().tree().triangle_count()} + pair.b().tree().triangle_count();
@@ -52,7 +54,7 @@ bool ScrewSearch::make(const MovingPair& pair, double start, SliceClock& clock) 
             return true;
         }
         trees_[is_a ? 0 : 1] = ImageTree(screw_, std::exchange(made_, {}).images);
-        stage_ = is_a ? Stage::kReadB : Stage::kMade;
+        stage_ = Stage::kReadB;
         if (!is_a) {
             finish(start);
         }
@@ -111,11 +113,45 @@ bool ScrewSearch::make_images(const MovingTree& body, Vec3 shift, double extent,
 }
 
 void ScrewSearch::finish(double start) {
+    if (is_crowded(start)) {
+        trees_ = {};
+        stage_ = Stage::kFailed;
+        return;
+    }
+    stage_ = Stage::kMade;
     for (const std::uint32_t a : trees_[0].roots()) {
         for (const std::uint32_t b : trees_[1].roots()) {
             push({start, a, b, 0}, duration_);
         }
     }
+}
+
+// Rings have no angles: where a screw slides, those of one body may meet all of the other that are
+// at their radius, each pair at its own time. Steps are better than such a crowd, as where a cone
+// of many facets comes down into a hole.
+bool ScrewSearch::is_crowded(double start) {
+    const std::size_t most = kCrowd * (trees_[0].image_count() + trees_[1].image_count());
+    std::vector<Entry> stack;
+    for (const std::uint32_t a : trees_[0].roots()) {
+        for (const std::uint32_t b : trees_[1].roots()) {
+            if (trees_[0].node(a).is_ring || trees_[1].node(b).is_ring) {
+                stack.push_back({start, a, b, 0});
+            }
+        }
+    }
+    for (std::size_t looked_at = 0; !stack.empty(); ++looked_at) {
+        if (looked_at > most) {
+            return true;
+        }
+        Entry entry = stack.back();
+        stack.pop_back();
+        if (std::isinf(first_time(entry)) || is_last(entry)) {
+            continue;
+        }
+        const std::array<Entry, 2> children = split(entry);
+        stack.insert(stack.end(), children.begin(), children.end());
+    }
+    return false;
 }
 
 // Rounded so that no contact at `time` or later is left out; one multiplication.
@@ -133,35 +169,51 @@ double ScrewSearch::meeting_time(const ImagePair& images, double time) const {
 }
 
 // Pairs of single images go by the bound of the images, so that they are handed over in order.
-void ScrewSearch::push(Entry entry, double last) {
+double ScrewSearch::first_time(const Entry& entry) {
     const ImageNode &a = trees_[0].node(entry.a), &b = trees_[1].node(entry.b);
     ++tests_;
     const double sigma = first_meeting(screw_, a, b, sigma_of(entry.time));
     if (std::isinf(sigma)) {
-        return;
+        return sigma;
     }
-    entry.time = time_of(sigma, entry.time);
-    if (a.is_image() && b.is_image()) {
-        ++tests_;
-        entry.time = meeting_time({a.begin, b.begin}, entry.time);
+    const double time = time_of(sigma, entry.time);
+    if (!is_last(entry)) {
+        return time;
     }
-    if (!(entry.time > last)) {
+    ++tests_;
+    return meeting_time({a.begin, b.begin}, time);
+}
+
+bool ScrewSearch::is_last(const Entry& entry) const {
+    return trees_[0].node(entry.a).is_image() && trees_[1].node(entry.b).is_image();
+}
+
+// The pairs that the larger node's children make.
+std::array<ScrewSearch::Entry, 2> ScrewSearch::split(const Entry& entry) {
+    const ImageNode &a = trees_[0].node(entry.a), &b = trees_[1].node(entry.b);
+    const bool opens_a = b.is_image() || (!a.is_image() && a.size >= b.size);
+    const std::uint32_t first = trees_[opens_a ? 0 : 1].split(opens_a ? entry.a : entry.b);
+    std::array<Entry, 2> children{entry, entry};
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        (opens_a ? children[k].a : children[k].b) = first + k;
+        ++children[k].depth;
+    }
+    return children;
+}
+
+void ScrewSearch::push(Entry entry, double last) {
+    entry.time = first_time(entry);
+    if (!std::isinf(entry.time) && !(entry.time > last)) {
         queue_.push(entry, entry.time, entry.depth);
     }
 }
 
 std::optional<ScrewSearch::Met> ScrewSearch::advance(double last) {
     const Entry entry = queue_.pop();
-    const ImageNode &a = trees_[0].node(entry.a), &b = trees_[1].node(entry.b);
-    if (a.is_image() && b.is_image()) {
+    if (is_last(entry)) {
         return hand_over(entry);
     }
-    const bool opens_a = b.is_image() || (!a.is_image() && a.size >= b.size);
-    const std::uint32_t first = trees_[opens_a ? 0 : 1].split(opens_a ? entry.a : entry.b);
-    for (std::uint32_t k = 0; k < 2; ++k) {
-        Entry child = entry;
-        (opens_a ? child.a : child.b) = first + k;
-        ++child.depth;
+    for (const Entry& child : split(entry)) {
         push(child, last);
     }
     return std::nullopt;

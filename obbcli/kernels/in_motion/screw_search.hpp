@@ -48,7 +48,7 @@ class ScrewSearch {
     // be apart in [0, start). Throws TreeError where a tree's file is damaged.
     bool make(const MovingPair& pair, double start, SliceClock& clock);
     [[nodiscard]] bool is_made() const { return stage_ == Stage::kMade; }
-    // There were too many pieces of triangles: nothing was made.
+    // There were too many pieces of triangles, or too many near the axis, where images tell little.
     [[nodiscard]] bool has_failed() const { return stage_ == Stage::kFailed; }
 
     [[nodiscard]] bool is_empty() const { return queue_.is_empty(); }
@@ -67,7 +67,7 @@ class ScrewSearch {
 
   private:
     enum class Stage : std::uint8_t { kReadA, kReadB, kMakeA, kMakeB, kMade, kFailed };
-    struct Entry {
+    struct Entry { // a pair of nodes that is apart before its time
         double time;
         std::uint32_t a, b; // nodes
         std::uint32_t depth;
@@ -84,6 +84,11 @@ class ScrewSearch {
     [[nodiscard]] bool make_images(const MovingTree& body, Vec3 shift, double extent,
                                    SliceClock& clock);
     void finish(double start);
+    [[nodiscard]] bool is_crowded(double start);
+    // When a pair may first meet, at its time or later; infinite where it does not.
+    [[nodiscard]] double first_time(const Entry& entry);
+    [[nodiscard]] bool is_last(const Entry& entry) const; // two single images
+    [[nodiscard]] std::array<Entry, 2> split(const Entry& entry);
     void push(Entry entry, double last);
     [[nodiscard]] double sigma_of(double time) const;
     [[nodiscard]] double time_of(double sigma, double least) const;

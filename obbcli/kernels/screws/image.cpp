@@ -47,30 +47,31 @@ AxialPoint middle(const AxialPoint& p, const AxialPoint& q) {
     return axial_point(0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y, 0.5 * p.z + 0.5 * q.z);
 }
 
-// How near the axis a triangle comes, from below. Any unit vector e bounds r from below by the
-// least e.q over the corners: here that towards the point of the triangle which is nearest to the
-// axis.
-double least_radius(const std::array<AxialPoint, 3>& corners) {
-    double nearest = std::numeric_limits<double>::infinity(), ex = 1, ey = 0;
+// From the axis to the point of a triangle that is nearest to it, or to the middle of its corners
+// where that is on the axis; a unit vector to 4 u.
+std::array<double, 2> nearest_direction(const std::array<AxialPoint, 3>& corners) {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::array<double, 2> to{1, 0};
+    const auto consider = [&](double x, double y) {
+        const double r = std::sqrt(x * x + y * y);
+        if (r > 0x1p-400 && r < nearest) {
+            nearest = r;
+            to = {x / r, y / r};
+        }
+    };
     for (std::size_t k = 0; k < 3; ++k) {
         const AxialPoint &p = corners[k], &q = corners[(k + 1) % 3];
         const double dx = q.x - p.x, dy = q.y - p.y, square = dx * dx + dy * dy;
         const double t = square > 0 ? std::clamp(-(p.x * dx + p.y * dy) / square, 0.0, 1.0) : 0.0;
-        const double x = p.x + t * dx, y = p.y + t * dy, r = std::sqrt(x * x + y * y);
-        if (r < nearest) {
-            nearest = r;
-            ex = x;
-            ey = y;
-        }
+        consider(p.x + t * dx, p.y + t * dy);
     }
-    if (!(nearest > 0)) {
-        return 0;
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (const AxialPoint& p : corners) {
-        least = std::min(least, (ex * p.x + ey * p.y) / nearest);
-    }
-    return std::max(0.0, least); // off by 8 u of the radii: a 2^-7th of the slack
+    return to;
+}
+
+std::array<double, 2> middle_direction(const std::array<AxialPoint, 3>& corners) {
+    const double x = corners[0].x + corners[1].x + corners[2].x,
+                 y = corners[0].y + corners[1].y + corners[2].y, r = std::sqrt(x * x + y * y);
+    return r > 0x1p-400 ? std::array{x / r, y / r} : std::array{1.0, 0.0};
 }
 
 } // namespace
@@ -98,6 +99,14 @@ Span Image::along(double n_r, double n_u) const {
                                       n_r * r[2] + n_u * u[2]};
     const Span hull = span_of(reach);
     const double sag = n_r * sag_r, both = std::fabs(n_u) * sag_u + round;
+    return {hull.low - std::max(0.0, sag) - both, hull.high + std::max(0.0, -sag) + both};
+}
+
+Span Image::profile_along(double n_r, double n_z, double slack) const {
+    const std::array<double, 3> reach{n_r * r[0] + n_z * z[0], n_r * r[1] + n_z * z[1],
+                                      n_r * r[2] + n_z * z[2]};
+    const Span hull = span_of(reach);
+    const double sag = n_r * sag_r, both = kAbove * slack;
     return {hull.low - std::max(0.0, sag) - both, hull.high + std::max(0.0, -sag) + both};
 }
 
@@ -142,18 +151,30 @@ void ImageMaker::cut(const std::array<AxialPoint, 3>& corners, unsigned depth, I
     images.push_back(image);
 }
 
+// Any unit vector e across the axis bounds the radius of a point sum c_i q_i from below, by
+// sum c_i e.q_i: so by the least e.q_i, and by sum c_i r_i less the most that r_i exceeds e.q_i. A
+// radius is at least 0, and convex: at most sum c_i r_i. All of this is off by 8 u of the radii,
+// which the slack covers.
 void ImageMaker::set_ring(const std::array<AxialPoint, 3>& corners, Image& image) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const auto near = nearest_direction(corners), middle = middle_direction(corners);
+    double least = kInfinity, sag = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const AxialPoint& p = corners[k];
+        image.r[k] = p.radius;
+        image.u[k] = image.z[k] = p.z;
+        least = std::min(least, near[0] * p.x + near[1] * p.y);
+        sag = std::max(sag, p.radius - (middle[0] * p.x + middle[1] * p.y));
+    }
+    const double most = span_of(image.r).high;
+    const Span height = span_of(image.z);
     image.is_ring = true;
-    image.radius = {least_radius(corners) - slack_,
-                    span_of({corners[0].radius, corners[1].radius, corners[2].radius}).high +
-                        slack_};
-    const Span height = span_of({corners[0].z, corners[1].z, corners[2].z});
+    image.radius = {std::max(0.0, least) - slack_, most + slack_};
     image.height = {height.low - slack_, height.high + slack_};
     image.angle = {-kInfinity, kInfinity};
-    image.r = {};
-    image.u = {};
-    image.sag_r = image.sag_u = image.round = 0;
+    image.sag_r = kAbove * std::min(sag, most);
+    image.sag_u = 0;
+    image.round = kAbove * slack_;
 }
 
 // What bounds the image, where corners i have radii r_i and angles t_i that span D = 2 h < pi about
@@ -196,6 +217,7 @@ bool ImageMaker::set(const std::array<AxialPoint, 3>& corners, Image& image) con
     double largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         angles[k] += shift;
+        image.z[k] = corners[k].z;
         image.u[k] = corners[k].z - pitch_ * angles[k];
         largest = std::max(largest, std::fabs(angles[k]));
     }

@@ -37,15 +37,18 @@ struct AxialPoint {
 struct Image {
     Span radius, height, angle;
     // In the plane of r and u it lies in the hull of three corners, widened by [-sag_r, 0] in r, by
-    // sag_u in u either way, and then by a disc of radius `round`.
-    std::array<double, 3> r, u;
+    // sag_u in u either way, and then by a disc of radius `round`. In the plane of r and z, its
+    // profile, it lies in the hull of three corners, widened by [-sag_r, 0] in r and by the slack.
+    std::array<double, 3> r, u, z;
     double sag_r, sag_u, round;
     std::uint32_t triangle; // as its body's owner numbers them
-    bool is_ring;  // only radius and height bound it: it is too near the axis to have an angle
+    // It is too near the axis to have an angle: its profile alone bounds it, and stands for u too.
+    bool is_ring;
     bool is_piece; // it holds a part of the triangle only
 
-    // Where it lies along (n_r, n_u), of length 1 to 4 u.
+    // Where it lies along (n_r, n_u), or its profile along (n_r, n_z), of length 1 to 4 u.
     [[nodiscard]] Span along(double n_r, double n_u) const;
+    [[nodiscard]] Span profile_along(double n_r, double n_z, double slack) const;
 };
 
 // Makes the images of one body's triangles.

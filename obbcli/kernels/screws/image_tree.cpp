@@ -109,6 +109,9 @@ void ImageTree::add_root(std::uint32_t begin, std::uint32_t end) {
 
 // Half the way of the node's points along the screw, as far as it tells when they meet.
 double ImageTree::angular_length(const ImageNode& node) const {
+    if (node.is_ring) {
+        return 0;
+    }
     const double r = node.radius.high;
     const double way = std::sqrt(r * r + pitch_ * pitch_); // of one radian
     const double longer = std::max(node.rectangle.e1, node.rectangle.e2);
@@ -130,12 +133,8 @@ ImageNode ImageTree::node_of(std::uint32_t begin, std::uint32_t end) const {
         node.angle.hold(image.angle);
     }
     node.is_ring = images[0].is_ring;
-    if (node.is_ring) {
-        node.size = std::max(node.radius.length(), node.height.length());
-    } else {
-        node.rectangle = fitted(images);
-        node.size = std::max({node.rectangle.e1, node.rectangle.e2, angular_length(node)});
-    }
+    node.rectangle = fitted(images);
+    node.size = std::max({node.rectangle.e1, node.rectangle.e2, angular_length(node)});
     return node;
 }
 
@@ -154,11 +153,6 @@ std::uint32_t ImageTree::split(std::uint32_t number) {
 
 // Where its images' middles are furthest apart.
 std::uint32_t ImageTree::part(const ImageNode& node) {
-    if (node.is_ring) {
-        return node.radius.length() > node.height.length()
-                   ? part_by(node, [](const Image& image) { return image.radius.middle(); })
-                   : part_by(node, [](const Image& image) { return image.height.middle(); });
-    }
     const Rectangle& box = node.rectangle;
     if (angular_length(node) > std::max(box.e1, box.e2)) {
         return part_by(node, [](const Image& image) { return image.angle.middle(); });

@@ -18,8 +18,8 @@ struct Rectangle {
     double e1 = 0, e2 = 0;
 };
 
-// A range of images. Rings have nodes of their own, so that they spoil no other; those have no
-// rectangle.
+// A range of images. Rings have nodes of their own, so that they spoil no other; the rectangle of
+// those is in the plane of r and z.
 struct ImageNode {
     Span radius, height, angle;
     Rectangle rectangle;
@@ -40,6 +40,7 @@ class ImageTree {
     // Numbers of the nodes that hold all images between them: one or two, or none.
     [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
     [[nodiscard]] const ImageNode& node(std::uint32_t number) const { return nodes_[number]; }
+    [[nodiscard]] std::size_t image_count() const { return images_.size(); }
     [[nodiscard]] const Image& image(std::uint32_t number) const { return images_[number]; }
     // The number of the first of a node's two children, made now if need be. Of no single image.
     [[nodiscard]] std::uint32_t split(std::uint32_t number);

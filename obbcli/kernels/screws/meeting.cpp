@@ -47,12 +47,8 @@ class Meeting {
             is_possible_ = !are_apart(height_a, height_b);
             return;
         }
-        const double x = (height_a.low - height_b.high) / screw_.pitch,
-                     y = (height_a.high - height_b.low) / screw_.pitch;
-        const double low = std::min(x, y), high = std::max(x, y);
-        sigma_.low = std::max(sigma_.low, low - kRelative * std::fabs(low));
-        sigma_.high = std::min(sigma_.high, high + kRelative * std::fabs(high));
-        is_possible_ = !(sigma_.low > sigma_.high);
+        between((height_a.low - height_b.high) / screw_.pitch,
+                (height_a.high - height_b.low) / screw_.pitch);
     }
 
     // Angles: which numbers of turns are possible at all.
@@ -78,6 +74,16 @@ class Meeting {
         is_possible_ = is_possible_ && !(turns_.low > turns_.high);
     }
 
+    // The same of the plane of r and z, where B's points move by pitch * sigma: `step` is the pitch
+    // along the direction.
+    void narrow_profiles(double low, double high, double step) {
+        if (step == 0) {
+            is_possible_ = is_possible_ && !(low > 0) && !(high < 0);
+            return;
+        }
+        between(low / step, high / step);
+    }
+
     // The first sigma that is left. Without angles it is that of the heights.
     [[nodiscard]] double first() const {
         if (!is_possible_) {
@@ -93,6 +99,13 @@ class Meeting {
     [[nodiscard]] double first_height() const { return is_possible_ ? sigma_.low : kNever; }
 
   private:
+    // Sigma is between two quotients.
+    void between(double x, double y) {
+        const double low = std::min(x, y), high = std::max(x, y);
+        sigma_.low = std::max(sigma_.low, low - kRelative * std::fabs(low));
+        sigma_.high = std::min(sigma_.high, high + kRelative * std::fabs(high));
+        is_possible_ = is_possible_ && !(sigma_.low > sigma_.high);
+    }
     [[nodiscard]] static bool are_apart(const Span& a, const Span& b) {
         return a.low > b.high || b.low > a.high;
     }
@@ -104,38 +117,50 @@ class Meeting {
     bool is_possible_ = true;
 };
 
-// Half of what B's rectangle covers along a direction is the sum over its two axes. The products
-// are off by 3 u of the sizes in play: of the extents, and of the difference of the centres.
-void narrow_along(Meeting& meeting, double n_r, double n_u, double own, const Rectangle& other,
-                  double d_r, double d_u, double lead) {
-    const double d = n_r * d_r + n_u * d_u;
-    const double cosine = std::fabs(n_r * other.n_r + n_u * other.n_u),
-                 sine = std::fabs(n_u * other.n_r - n_r * other.n_u);
-    const double e = (1 + kRelative) * (own + cosine * other.e1 + sine * other.e2) +
-                     kRelative * (std::fabs(d_r) + std::fabs(d_u) + other.e1 + other.e2);
-    meeting.narrow(d - e, d + e, lead * n_u);
+// Both rectangles' axes, in one plane. Half of what a rectangle covers along a direction is the sum
+// over its two axes. The products are off by 3 u of the sizes in play: of the extents, and of the
+// difference of the centres. Calls narrow(low, high, n) with n along u or z.
+template <typename Narrow>
+void narrow_rectangles(const Meeting& meeting, const Rectangle& a, const Rectangle& b,
+                       const Narrow& narrow) {
+    const double d_r = a.r - b.r, d_u = a.u - b.u;
+    const auto along = [&](double n_r, double n_u, double own, const Rectangle& other) {
+        if (!meeting.is_possible()) {
+            return;
+        }
+        const double d = n_r * d_r + n_u * d_u;
+        const double cosine = std::fabs(n_r * other.n_r + n_u * other.n_u),
+                     sine = std::fabs(n_u * other.n_r - n_r * other.n_u);
+        const double e = (1 + kRelative) * (own + cosine * other.e1 + sine * other.e2) +
+                         kRelative * (std::fabs(d_r) + std::fabs(d_u) + other.e1 + other.e2);
+        narrow(d - e, d + e, n_u);
+    };
+    along(a.n_r, a.n_u, a.e1, b);
+    along(-a.n_u, a.n_r, a.e2, b);
+    along(b.n_r, b.n_u, b.e1, a);
+    along(-b.n_u, b.n_r, b.e2, a);
 }
 
-// Where images lie along a direction is off by 3 u of their coordinates, which their slack covers:
-// it is 512 u of radii and heights at least, and 32 u of |pitch angle|.
-void narrow_along(Meeting& meeting, double n_r, double n_u, const Image& a, const Image& b,
-                  double lead) {
-    const Span x = a.along(n_r, n_u), y = b.along(n_r, n_u);
-    const double error =
-        kRelative * (std::fabs(x.low) + std::fabs(x.high) + std::fabs(y.low) + std::fabs(y.high));
-    meeting.narrow(x.low - y.high - error, x.high - y.low + error, lead * n_u);
-}
-
-// The normal of each edge of an image in the plane of r and u.
-void narrow_by_edges(Meeting& meeting, const Image& own, const Image& a, const Image& b,
-                     double lead) {
+// The normals of the edges of two hulls, whose corners are (r, y). Where images lie along a
+// direction is off by 3 u of their coordinates, which their slack covers: it is 512 u of radii and
+// heights at least, and 32 u of |pitch angle|. Calls narrow(n_r, n_y).
+template <typename Narrow>
+void narrow_by_edges(const Meeting& meeting, const std::array<double, 3>& r,
+                     const std::array<double, 3>& y, const Narrow& narrow) {
     for (std::size_t k = 0; k < 3 && meeting.is_possible(); ++k) {
-        const double d_r = own.r[(k + 1) % 3] - own.r[k], d_u = own.u[(k + 1) % 3] - own.u[k];
-        const double length = std::sqrt(d_r * d_r + d_u * d_u);
+        const double d_r = r[(k + 1) % 3] - r[k], d_y = y[(k + 1) % 3] - y[k];
+        const double length = std::sqrt(d_r * d_r + d_y * d_y);
         if (length > 0x1p-400) {
-            narrow_along(meeting, -d_u / length, d_r / length, a, b, lead);
+            narrow(-d_y / length, d_r / length);
         }
     }
+}
+
+// What is left between two spans, widened by the rounding of the differences.
+Span difference(const Span& x, const Span& y) {
+    const double error =
+        kRelative * (std::fabs(x.low) + std::fabs(x.high) + std::fabs(y.low) + std::fabs(y.high));
+    return {x.low - y.high - error, x.high - y.low + error};
 }
 
 } // namespace
@@ -144,40 +169,52 @@ double first_meeting(const RelativeScrew& screw, const ImageNode& a, const Image
                      double sigma) {
     Meeting meeting(screw, sigma);
     meeting.meet(a.radius, a.height, b.radius, b.height);
-    if (a.is_ring || b.is_ring || !meeting.is_possible()) {
+    if (a.is_ring || b.is_ring) {
+        // Both in one plane: u is z on a hinge.
+        if ((a.is_ring && b.is_ring) || screw.is_hinge()) {
+            narrow_rectangles(meeting, a.rectangle, b.rectangle,
+                              [&](double low, double high, double n_z) {
+                                  meeting.narrow_profiles(low, high, screw.pitch * n_z);
+                              });
+        }
         return meeting.first_height();
     }
-    meeting.turn(a.angle, b.angle);
-    const Rectangle &p = a.rectangle, &q = b.rectangle;
-    const double d_r = p.r - q.r, d_u = p.u - q.u;
     if (meeting.is_possible()) {
-        narrow_along(meeting, p.n_r, p.n_u, p.e1, q, d_r, d_u, screw.lead);
+        meeting.turn(a.angle, b.angle);
     }
-    if (meeting.is_possible()) {
-        narrow_along(meeting, -p.n_u, p.n_r, p.e2, q, d_r, d_u, screw.lead);
-    }
-    if (meeting.is_possible()) {
-        narrow_along(meeting, q.n_r, q.n_u, q.e1, p, d_r, d_u, screw.lead);
-    }
-    if (meeting.is_possible()) {
-        narrow_along(meeting, -q.n_u, q.n_r, q.e2, p, d_r, d_u, screw.lead);
-    }
+    narrow_rectangles(meeting, a.rectangle, b.rectangle, [&](double low, double high, double n_u) {
+        meeting.narrow(low, high, screw.lead * n_u);
+    });
     return meeting.first();
 }
 
-// The normals of both hulls and u are all axes that two such hulls need; r was looked at first.
+// The normals of both hulls and u are all axes that two such hulls need; r was looked at first, and
+// z where profiles are compared.
 double first_meeting(const RelativeScrew& screw, const Image& a, const Image& b, double sigma) {
     Meeting meeting(screw, sigma);
     meeting.meet(a.radius, a.height, b.radius, b.height);
-    if (a.is_ring || b.is_ring || !meeting.is_possible()) {
+    if (a.is_ring || b.is_ring) {
+        const auto narrow = [&](double n_r, double n_z) {
+            const Span d = difference(a.profile_along(n_r, n_z, screw.slack),
+                                      b.profile_along(n_r, n_z, screw.slack));
+            meeting.narrow_profiles(d.low, d.high, screw.pitch * n_z);
+        };
+        narrow_by_edges(meeting, a.r, a.z, narrow);
+        narrow_by_edges(meeting, b.r, b.z, narrow);
         return meeting.first_height();
     }
-    meeting.turn(a.angle, b.angle);
+    const auto narrow = [&](double n_r, double n_u) {
+        const Span d = difference(a.along(n_r, n_u), b.along(n_r, n_u));
+        meeting.narrow(d.low, d.high, screw.lead * n_u);
+    };
     if (meeting.is_possible()) {
-        narrow_along(meeting, 0, 1, a, b, screw.lead);
+        meeting.turn(a.angle, b.angle);
     }
-    narrow_by_edges(meeting, a, a, b, screw.lead);
-    narrow_by_edges(meeting, b, a, b, screw.lead);
+    if (meeting.is_possible()) {
+        narrow(0, 1);
+    }
+    narrow_by_edges(meeting, a.r, a.u, narrow);
+    narrow_by_edges(meeting, b.r, b.u, narrow);
     return meeting.first();
 }
 
