@@ -92,8 +92,8 @@ Rectangle fitted(std::span<const Image> images) {
 
 ImageTree::ImageTree(const RelativeScrew& screw, std::vector<Image> images)
     : images_(std::move(images)), pitch_(screw.pitch), sweep_(screw.sweep) {
-    const auto rings = std::stable_partition(images_.begin(), images_.end(),
-                                             [](const Image& image) { return !image.is_ring; });
+    const auto rings = std::partition(images_.begin(), images_.end(),
+                                      [](const Image& image) { return !image.is_ring; });
     const auto middle = static_cast<std::uint32_t>(rings - images_.begin());
     nodes_.emplace_back(); // number 0 says that there is no child
     add_root(0, middle);
