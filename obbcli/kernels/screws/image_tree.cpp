@@ -9,7 +9,8 @@ namespace obb {
 namespace {
 
 // To separate for ever takes nodes small in r and u, to find out when takes nodes small in angle:
-// the angle counts as much as the motion is short, but this much at least.
+// the angle counts as much as the motion is short, and as the screw is steep, for then u goes with
+// the angle; but this much at least.
 constexpr double kLeastWeight = 1.0 / 8;
 // A split that leaves one side less than this share is made at the median instead.
 constexpr std::uint32_t kLeastShare = 32;
@@ -115,7 +116,8 @@ double ImageTree::angular_length(const ImageNode& node) const {
     const double r = node.radius.high;
     const double way = std::sqrt(r * r + pitch_ * pitch_); // of one radian
     const double longer = std::max(node.rectangle.e1, node.rectangle.e2);
-    const double weight = std::max(kLeastWeight, longer / (longer + way * sweep_));
+    const double steep = std::fabs(pitch_) / (std::fabs(pitch_) + r);
+    const double weight = std::max({kLeastWeight, steep, longer / (longer + way * sweep_)});
     return 0.5 * node.angle.length() * way * weight;
 }
 
