@@ -161,8 +161,9 @@ void ContactQuery::visit(const Entry& entry) {
     } else {
         probe(entry);
         looked_at_ = entry;
-        take_tie(ties_.may_tie(entry.refs(), counts_.pops) ? ties_.look(pair_, entry.refs())
-                                                           : TiePlanes::Verdict::kUnknown);
+        take_tie(ties_.may_tie(entry.refs(), counts_.pops)
+                     ? ties_.look(pair_, entry.refs(), counts_.pops)
+                     : TiePlanes::Verdict::kUnknown);
     }
 }
 

@@ -109,8 +109,9 @@ void RayCast::visit(MovingPair& pair, const Entry& entry) {
         return;
     }
     looked_at_ = entry;
-    take_tie(pair, ties_.may_tie(entry.refs(), counts_.pops) ? ties_.look(pair, entry.refs())
-                                                             : TiePlanes::Verdict::kUnknown);
+    take_tie(pair, ties_.may_tie(entry.refs(), counts_.pops)
+                       ? ties_.look(pair, entry.refs(), counts_.pops)
+                       : TiePlanes::Verdict::kUnknown);
 }
 
 // Goes on with the pair that was looked at, as the planes of the earliest contact say.

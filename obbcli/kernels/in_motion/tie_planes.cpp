@@ -8,6 +8,8 @@ namespace obb {
 namespace {
 
 constexpr std::uint64_t kTiePatience = 64;
+// Where boxes lie on both sides of a plane, looks at others become as rare as this.
+constexpr std::uint64_t kLongestPause = 32;
 // By how much boxes may reach beyond a plane that what they hold does not cross, of the size of
 // their extents and of their distance from the pivot: they were turned as well, and the plane's
 // normal is rounded.
@@ -38,6 +40,7 @@ void TiePlanes::set(const MovingPair& pair, const PairRef& refs, const Touch& to
     }
     crowd_ = {};
     patience_ = pops + kTiePatience;
+    pause_ = 0;
 }
 
 bool TiePlanes::may_tie(const PairRef& refs, std::uint64_t pops) const {
@@ -73,14 +76,21 @@ bool TiePlanes::waits_for(const MovingPair& pair, const PairRef& candidate, cons
     return false;
 }
 
-TiePlanes::Verdict TiePlanes::look(const MovingPair& pair, const PairRef& refs) {
+TiePlanes::Verdict TiePlanes::look(const MovingPair& pair, const PairRef& refs,
+                                   std::uint64_t pops) {
     if (crowd_.starts_with_all()) {
         const PairRef all{pair.a().tree().root(), pair.b().tree().root()};
         if (waits_for(pair, all, refs, 0)) {
             return Verdict::kLooking;
         }
     }
-    return waits_for(pair, refs, refs, 0) ? Verdict::kLooking : Verdict::kUnknown;
+    if (waits_for(pair, refs, refs, 0)) {
+        pause_ = 0;
+        return Verdict::kLooking;
+    }
+    pause_ = std::min(2 * pause_ + 1, kLongestPause);
+    patience_ = pops + pause_;
+    return Verdict::kUnknown;
 }
 
 // Whether all vertices under the nodes that are looked at are on their sides of the plane; nothing

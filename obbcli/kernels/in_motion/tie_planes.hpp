@@ -32,9 +32,9 @@ class TiePlanes {
 
     // Whether a look at a pair of nodes is due.
     [[nodiscard]] bool may_tie(const PairRef& refs, std::uint64_t pops) const;
-    // Begins to look at a pair. The bodies as a whole are looked at first: a plane that holds for
-    // them ends a search.
-    [[nodiscard]] Verdict look(const MovingPair& pair, const PairRef& refs);
+    // Begins to look at a pair, after so many pops. The bodies as a whole are looked at first: a
+    // plane that holds for them ends a search.
+    [[nodiscard]] Verdict look(const MovingPair& pair, const PairRef& refs, std::uint64_t pops);
     // Goes on with vertices one by one, in slices: both nodes may hold whole meshes.
     [[nodiscard]] Verdict look_on(const MovingPair& pair, SliceClock& clock);
     [[nodiscard]] bool is_looking() const { return wait_.has_value(); }
@@ -67,6 +67,7 @@ class TiePlanes {
 
     std::vector<Tie> planes_;
     std::uint64_t patience_ = 0; // pops up to which nothing is looked at
+    std::uint64_t pause_ = 0;    // pops from one look in vain to the next
     TieCrowd crowd_;
     std::optional<Wait> wait_;
 };
