@@ -13,16 +13,6 @@ namespace {
 // Products of the tiniest coordinates vanish; so does what is 2^-900 of the scene.
 constexpr double kTiny = 0x1p-900;
 
-// Inverse of a matrix that is orthonormal up to 1e-9, by its adjugate.
-Mat3 inverse(const Mat3& m) {
-    const Vec3 c0 = cross(m.rows[1], m.rows[2]);
-    const Vec3 c1 = cross(m.rows[2], m.rows[0]);
-    const Vec3 c2 = cross(m.rows[0], m.rows[1]);
-    const double scale = 1.0 / dot(m.rows[0], c0);
-    return {{scale * Vec3{c0.x, c1.x, c2.x}, scale * Vec3{c0.y, c1.y, c2.y},
-             scale * Vec3{c0.z, c1.z, c2.z}}};
-}
-
 // Coordinates of a posed mesh stay below three times its largest coordinate plus the translation.
 void require_range(const PosedTree& body) {
     if (body.pose().is_identity()) {

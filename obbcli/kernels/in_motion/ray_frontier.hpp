@@ -27,7 +27,7 @@ class RayFrontier {
   public:
     explicit RayFrontier(bool is_queue) : is_queue_(is_queue) {}
 
-    [[nodiscard]] bool is_queue() const { return is_queue_; }
+    // For good.
     void become_queue() {
         is_queue_ = true;
         for (const RayEntry& entry : stack_) {
@@ -49,13 +49,14 @@ class RayFrontier {
         return (is_queue_ ? queue_.next_time() : stack_.back().time) < time;
     }
 
-    void push(RayEntry entry) {
+    void push(const RayEntry& entry) {
         if (is_queue_) {
             queue_.push(entry, entry.time, entry.next > 0 ? 0 : entry.a.depth + entry.b.depth);
             return;
         }
-        entry.least = std::min(entry.time, next_time());
+        const double least = std::min(entry.time, next_time());
         stack_.push_back(entry);
+        stack_.back().least = least;
     }
     RayEntry pop() {
         if (is_queue_) {

@@ -7,6 +7,14 @@
 
 namespace obb {
 
+namespace {
+
+// Contacts that come earlier by less than this share of their time are no sign that still earlier
+// ones come soon: faces that all but tie have thousands of them.
+constexpr double kTie = 0x1p-20;
+
+} // namespace
+
 // Tests all triangles under one node against all under the other.
 void RayCast::meet(MovingPair& pair, const Entry& entry) {
     std::array<Triangle, kCrowd> on_a, on_b;
@@ -88,10 +96,13 @@ void RayCast::meet_pairs(MovingPair& pair, const Entry& entry, std::span<const P
                     add_unsure(pair, {found.entry_low, found.exit_high, refs_of.a, refs_of.b});
                     continue;
                 }
-                add({found.entry_low, refs_of.a, refs_of.b, is_sure});
-                if (is_sure && !options_.each_pair && found.entry_high < latest_) {
+                const Candidate candidate{found.entry_low, refs_of.a, refs_of.b};
+                add(candidate);
+                if (!options_.each_pair && found.entry_high < latest_) {
+                    const bool is_tie = latest_ * (1 - kTie) < found.entry_high;
                     latest_ = found.entry_high;
-                    waits_ = counts_.pops + patience_;
+                    front_runner_ = candidate;
+                    waits_ = is_tie ? waits_ : counts_.pops + patience_;
                 }
             }
         }
@@ -104,8 +115,8 @@ void RayCast::add_unsure(MovingPair& pair, const Entry& entry) {
     const BoxEntries found =
         entries_of(pair, entry, {{entry.a, entry.a}, 1}, {{entry.b, entry.b}, 1});
     ++counts_.box_tests;
-    if (const std::optional<Entry> part = narrowed(entry, found.entry[0], found.exit[0])) {
-        add({part->time, entry.a, entry.b, false});
+    if (Entry part; narrow(entry, found.entry[0], found.exit[0], part)) {
+        add({part.time, entry.a, entry.b});
     }
 }
 
@@ -115,25 +126,36 @@ void RayCast::add(const Candidate& candidate) {
 }
 
 // Exact arithmetic takes as long as hundreds of boxes, so it waits until nothing can come before a
-// pair, or until so many pops have found nothing earlier that a tie is to be feared.
+// pair.
+bool RayCast::is_next_due() const {
+    return !candidates_.empty() && candidates_.front().low <= next_time();
+}
+
+// Ahead of its time the front runner is due where any contact will do, and where so many pops have
+// found nothing much earlier that a tie is to be feared.
 bool RayCast::is_candidate_due() const {
-    if (candidates_.empty()) {
-        return false;
+    return is_next_due() || (options_.any_contact && front_runner_) ||
+           (!options_.each_pair && !candidates_.empty() && counts_.pops > waits_);
+}
+
+RayCast::Candidate RayCast::take_candidate() {
+    if (front_runner_ && !is_next_due()) {
+        return *std::exchange(front_runner_, std::nullopt);
     }
-    const Candidate& first = candidates_.front();
-    return frontier_.is_empty() || first.low <= frontier_.next_time() ||
-           (options_.any_contact && first.is_sure) ||
-           (!options_.each_pair && counts_.pops > waits_);
+    std::pop_heap(candidates_.begin(), candidates_.end());
+    const Candidate candidate = candidates_.back();
+    candidates_.pop_back();
+    return candidate;
 }
 
 // Eberly 2008 §4.2.2.
 void RayCast::solve(const MovingPair& pair) {
-    std::pop_heap(candidates_.begin(), candidates_.end());
-    const Candidate candidate = candidates_.back();
-    candidates_.pop_back();
+    const Candidate candidate = take_candidate();
     patience_ *= 2;
     waits_ = counts_.pops + patience_;
-    if (!options_.each_pair && ties_.are_later(pair, {candidate.a, candidate.b})) {
+    const bool is_known =
+        exact_ && exact_->a.begin == candidate.a.begin && exact_->b.begin == candidate.b.begin;
+    if (is_known || (!options_.each_pair && ties_.are_later(pair, {candidate.a, candidate.b}))) {
         return;
     }
     ++counts_.exact_triangle_tests;
@@ -141,6 +163,9 @@ void RayCast::solve(const MovingPair& pair) {
     const std::optional<PairContact> found = obb::first_contact(
         pair.a().posed_triangle(candidate.a), pair.b().posed_triangle(candidate.b), motion);
     if (!found) {
+        // Of faces along each other doubles tell little, and floats less: the earliest first.
+        is_close_ = true;
+        frontier_.become_queue();
         return;
     }
     const double high = pair.scaled_time(std::min(found->time_above, motion.duration));

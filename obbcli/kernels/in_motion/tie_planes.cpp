@@ -66,9 +66,14 @@ bool TiePlanes::are_sides(const MovingPair& pair, const PairRef& refs, const Tie
 
 bool TiePlanes::waits_for(const MovingPair& pair, const PairRef& candidate, const PairRef& refs,
                           std::size_t plane) {
+    const bool is_all = are_same(candidate.a, pair.a().tree().root()) &&
+                        are_same(candidate.b, pair.b().tree().root());
     for (; plane < planes_.size(); ++plane) {
         if (are_sides(pair, candidate, planes_[plane])) {
-            wait_ = Wait{{candidate, refs}, plane, candidate.a.begin, candidate.b.begin, {}};
+            wait_ = std::make_unique<Wait>(Wait{.nodes = {candidate, refs},
+                                                .plane = plane,
+                                                .next = {candidate.a.begin, candidate.b.begin},
+                                                .is_all = is_all});
             wait_->nodes.begin(pair.a().tree(), pair.b().tree());
             return true;
         }
@@ -93,6 +98,33 @@ TiePlanes::Verdict TiePlanes::look(const MovingPair& pair, const PairRef& refs,
     return Verdict::kUnknown;
 }
 
+// Whether all vertices of a triangle are on their side of the plane. Of the bodies as a whole it
+// keeps which are the farthest beyond it.
+bool TiePlanes::all_hold(const MovingTree& body, std::uint32_t position, std::size_t side) {
+    Wait& wait = *wait_;
+    const Tie& tie = planes_[wait.plane];
+    const NodeRef ref{position, position + 1, 0, 0};
+    const Triangle t = body.posed_triangle(ref);
+    const Corners& corners = body.tree().corners[position];
+    bool holds = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (wait.seen[side].add(corners[k]) ||
+            (side == 0 ? tie.plane.holds_a(t[k]) : tie.plane.holds_b(t[k]))) {
+            continue;
+        }
+        holds = false;
+        if (!wait.is_all) {
+            break;
+        }
+        const double height = top_of(body.triangle(ref), side == 0 ? tie.normal : -tie.normal);
+        if (!ahead_.triangles[side] || height > wait.farthest[side]) {
+            ahead_.triangles[side] = ref;
+            wait.farthest[side] = height;
+        }
+    }
+    return holds;
+}
+
 // Whether all vertices under the nodes that are looked at are on their sides of the plane; nothing
 // where the slice is over before that is known.
 std::optional<bool> TiePlanes::compare(const MovingPair& pair, SliceClock& clock) {
@@ -100,31 +132,21 @@ std::optional<bool> TiePlanes::compare(const MovingPair& pair, SliceClock& clock
     if (!wait.nodes.advance(clock)) {
         return std::nullopt;
     }
-    const ContactPlane& plane = planes_[wait.plane].plane;
-    const auto all_hold = [&](const MovingTree& body, std::uint32_t& next, std::uint32_t end,
-                              RecentVertices& seen, const auto& holds) -> std::optional<bool> {
-        for (; next < end; ++next) {
+    const PairRef& refs = wait.nodes.candidate;
+    for (const std::size_t side : {0U, 1U}) {
+        const MovingTree& body = side == 0 ? pair.a() : pair.b();
+        const std::uint32_t end = side == 0 ? refs.a.end : refs.b.end;
+        for (std::uint32_t& next = wait.next[side]; next < end; ++next) {
             if (clock.is_over()) {
                 return std::nullopt;
             }
-            const Triangle t = body.posed_triangle({next, next + 1, 0, 0});
-            const Corners& corners = body.tree().corners[next];
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (!seen.add(corners[k]) && !holds(t[k])) {
-                    return false;
-                }
+            wait.holds = all_hold(body, next, side) && wait.holds;
+            if (!wait.holds && !wait.is_all) {
+                return false;
             }
         }
-        return true;
-    };
-    const PairRef& refs = wait.nodes.candidate;
-    const std::optional<bool> a = all_hold(pair.a(), wait.next_a, refs.a.end, wait.seen[0],
-                                           [&](const Vec3& p) { return plane.holds_a(p); });
-    if (a != true) {
-        return a;
     }
-    return all_hold(pair.b(), wait.next_b, refs.b.end, wait.seen[1],
-                    [&](const Vec3& p) { return plane.holds_b(p); });
+    return wait.holds;
 }
 
 TiePlanes::Verdict TiePlanes::look_on(const MovingPair& pair, SliceClock& clock) {

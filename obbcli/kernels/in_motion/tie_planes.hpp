@@ -12,7 +12,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace obb {
@@ -37,7 +39,15 @@ class TiePlanes {
     [[nodiscard]] Verdict look(const MovingPair& pair, const PairRef& refs, std::uint64_t pops);
     // Goes on with vertices one by one, in slices: both nodes may hold whole meshes.
     [[nodiscard]] Verdict look_on(const MovingPair& pair, SliceClock& clock);
-    [[nodiscard]] bool is_looking() const { return wait_.has_value(); }
+    [[nodiscard]] bool is_looking() const { return wait_ != nullptr; }
+
+    // After a look at the bodies as a whole that found vertices beyond a plane: triangles with
+    // those that are farthest beyond it, of A and of B. What touches earlier than the contact is
+    // likely to have one of them. Told once.
+    struct Ahead {
+        std::array<std::optional<NodeRef>, 2> triangles;
+    };
+    [[nodiscard]] Ahead take_ahead() { return std::exchange(ahead_, Ahead{}); }
 
     // Whether two triangles surely touch no earlier than the contact.
     [[nodiscard]] bool are_later(const MovingPair& pair, const PairRef& refs) const;
@@ -54,8 +64,11 @@ class TiePlanes {
     struct Wait {
         TieWait<PairRef> nodes;
         std::size_t plane;
-        std::uint32_t next_a, next_b;
-        std::array<RecentVertices, 2> seen;
+        std::array<std::uint32_t, 2> next; // triangles of A and of B
+        bool is_all;                       // whether the nodes are the bodies as a whole
+        bool holds = true;
+        std::array<double, 2> farthest{}; // beyond the plane, from the pivots
+        std::array<RecentVertices, 2> seen{};
     };
 
     [[nodiscard]] static bool are_sides(const MovingPair& pair, const PairRef& refs,
@@ -65,11 +78,14 @@ class TiePlanes {
 
     [[nodiscard]] std::optional<bool> compare(const MovingPair& pair, SliceClock& clock);
 
+    bool all_hold(const MovingTree& body, std::uint32_t position, std::size_t side);
+
     std::vector<Tie> planes_;
+    Ahead ahead_;
     std::uint64_t patience_ = 0; // pops up to which nothing is looked at
     std::uint64_t pause_ = 0;    // pops from one look in vain to the next
     TieCrowd crowd_;
-    std::optional<Wait> wait_;
+    std::unique_ptr<Wait> wait_; // large, and seldom needed
 };
 
 } // namespace obb

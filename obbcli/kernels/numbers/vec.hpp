@@ -93,6 +93,16 @@ struct Mat3 {
     return result;
 }
 
+// Inverse of a matrix that is orthonormal up to 1e-9, by its adjugate.
+[[nodiscard]] inline Mat3 inverse(const Mat3& m) {
+    const Vec3 c0 = cross(m.rows[1], m.rows[2]);
+    const Vec3 c1 = cross(m.rows[2], m.rows[0]);
+    const Vec3 c2 = cross(m.rows[0], m.rows[1]);
+    const double scale = 1.0 / dot(m.rows[0], c0);
+    return {{scale * Vec3{c0.x, c1.x, c2.x}, scale * Vec3{c0.y, c1.y, c2.y},
+             scale * Vec3{c0.z, c1.z, c2.z}}};
+}
+
 // How far columns are from orthonormal: the largest entry of |M^T M - 1|.
 [[nodiscard]] inline double skew_of(const Mat3& m) {
     double largest = 0;
