@@ -178,7 +178,7 @@ OBB_INLINE void judge(const EightFrame& frame, const EightNodes& nodes, EightVer
                          inner(ha, radii),
                      most);
     }
-    const unsigned deep_by_faces = bits_of<kBytes>(most < Real{} - e);
+    const unsigned deep_by_faces = bits_of<Real>(most < Real{} - e);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (std::size_t j = 0; j < 3; ++j) {
@@ -189,9 +189,9 @@ OBB_INLINE void judge(const EightFrame& frame, const EightNodes& nodes, EightVer
             most = upper(distance - (radius_a + radius_b), most);
         }
     }
-    verdicts.apart = bits_of<kBytes>(most > e);
+    verdicts.apart = bits_of<Real>(most > e);
     verdicts.open_by_faces = ~(verdicts.apart | deep_by_faces) & 0xffU;
-    verdicts.open = ~(verdicts.apart | bits_of<kBytes>(most < Real{} - e)) & 0xffU;
+    verdicts.open = ~(verdicts.apart | bits_of<Real>(most < Real{} - e)) & 0xffU;
     way.store(verdicts.nearness.data());
 }
 

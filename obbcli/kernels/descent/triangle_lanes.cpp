@@ -1,68 +1,109 @@
 #include "descent/triangle_lanes.hpp"
 
 #include "exact/orientation.hpp"
+#include "numbers/lane_moves.hpp"
 
 namespace obb {
 namespace {
 
-[[nodiscard]] Four largest_coordinate(const Vector3<Four>& v) {
-    return maximum(maximum(absolute(v.x), absolute(v.y)), absolute(v.z));
-}
+template <typename Real>
+using Lanes3 = std::array<Real, 3>;
 
-[[nodiscard]] Vector3<Four> broadcast(const Vec3& v) {
-    return {every(v.x, Four{}), every(v.y, Four{}), every(v.z, Four{})};
+template <typename Real>
+OBB_INLINE Real inner(const Lanes3<Real>& a, const Lanes3<Real>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <typename Real>
+OBB_INLINE Lanes3<Real> difference(const Lanes3<Real>& a, const Lanes3<Real>& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <typename Real>
+OBB_INLINE Real absolute_sum(const Lanes3<Real>& a) {
+    return magnitude(a[0]) + magnitude(a[1]) + magnitude(a[2]);
 }
 
 // Whether all points are above a plane, or all below, beyond rounding: triple_error() in lanes.
-[[nodiscard]] FourMask on_one_side(const FourTriangles& plane, const FourTriangles& other,
-                                   FourSides& sides) {
-    const Vector3<Four> u = plane[1] - plane[0];
-    const Vector3<Four> v = plane[2] - plane[0];
-    const Vector3<Four> normal = cross(u, v);
-    const Four sizes = absolute_sum(u) * absolute_sum(v);
-    const Four factor = (kTripleError / 4) * (4.0 * sizes + 0x1p-960);
+template <typename Real>
+OBB_INLINE unsigned on_one_side(const LaneTriangles<Real>& plane, const LaneTriangles<Real>& other,
+                                FourSides& sides) {
+    const Lanes3<Real> u = difference(plane[1], plane[0]);
+    const Lanes3<Real> v = difference(plane[2], plane[0]);
+    const Lanes3<Real> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                              u[0] * v[1] - u[1] * v[0]};
+    const Real sizes = absolute_sum(u) * absolute_sum(v);
+    const Real factor = Real(kTripleError / 4) * (Real(4.0) * sizes + Real(0x1p-960));
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vector3<Four> w = other[k] - plane[0];
-        const Four error = factor * largest_coordinate(w) + 0x1p-1000;
-        const Four value = dot(normal, w);
-        sides.above[k] = value > error;
-        sides.below[k] = value < -error;
+        const Lanes3<Real> w = difference(other[k], plane[0]);
+        const Real reach = upper(upper(magnitude(w[0]), magnitude(w[1])), magnitude(w[2]));
+        const Real error = factor * reach + Real(0x1p-1000);
+        const Real value = inner(normal, w);
+        sides.above[k] = bits_of<Real>(value > error);
+        sides.below[k] = bits_of<Real>(value < Real{} - error);
     }
     return (sides.above[0] & sides.above[1] & sides.above[2]) |
            (sides.below[0] & sides.below[1] & sides.below[2]);
 }
 
-[[gnu::always_inline]] inline Vector3<Four> gathered(const FourCorners& corners, std::size_t i) {
-    const Vec3 &p = *corners[0][i], &q = *corners[1][i], &r = *corners[2][i], &s = *corners[3][i];
-    return {Four{p.x, q.x, r.x, s.x}, Four{p.y, q.y, r.y, s.y}, Four{p.z, q.z, r.z, s.z}};
+template <std::size_t kBytes>
+OBB_INLINE void gather(const FourCorners& corners, std::size_t i, Lanes3<Doubles<kBytes>>& vertex) {
+    gather_pairs<kBytes>([&](std::size_t k)
+                             __attribute__((always_inline)) { return &corners[k][i]->x; },
+                         vertex[0], vertex[1]);
+    const std::array<double, 4> z{corners[0][i]->z, corners[1][i]->z, corners[2][i]->z,
+                                  corners[3][i]->z};
+    vertex[2] = Doubles<kBytes>::at(z.data());
+}
+
+template <std::size_t kBytes>
+OBB_INLINE unsigned cross(const Triangle& one, const FourTriangles& others, FourSides& sides_one,
+                          FourSides& sides_others) {
+    using Real = Doubles<kBytes>;
+    LaneTriangles<Real> ones, group;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            ones[i][k] = Real(one[i][k]);
+            group[i][k] = Real::at(others[i][k].data());
+        }
+    }
+    const unsigned apart =
+        on_one_side(ones, group, sides_others) | on_one_side(group, ones, sides_one);
+    return ~apart & 0b1111U;
 }
 
 } // namespace
 
-OBB_WIDE void gather_triangles(const FourCorners& corners, FourTriangles& triangles) {
+void gather_triangles(const FourCorners& corners, FourTriangles& triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-        triangles[i] = gathered(corners, i);
+        for (std::size_t k = 0; k < 4; ++k) {
+            triangles[i][0][k] = corners[k][i]->x;
+            triangles[i][1][k] = corners[k][i]->y;
+            triangles[i][2][k] = corners[k][i]->z;
+        }
     }
 }
 
-OBB_WIDE void pose_triangles(const Pose& pose, const FourCorners& corners,
-                             FourTriangles& triangles) {
-    const auto& rows = pose.rotation.rows;
-    const std::array<Vector3<Four>, 3> q{broadcast(rows[0]), broadcast(rows[1]),
-                                         broadcast(rows[2])};
-    const Vector3<Four> shift = broadcast(pose.translation);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vector3<Four> p = gathered(corners, i);
-        triangles[i] = Vector3<Four>{dot(q[0], p), dot(q[1], p), dot(q[2], p)} + shift;
-    }
+void pose_triangles(const Pose& pose, const FourCorners& corners, FourTriangles& triangles) {
+    in_registers([&]<std::size_t kBytes>() {
+        using Real = Doubles<kBytes>;
+        for (std::size_t i = 0; i < 3; ++i) {
+            Lanes3<Real> p;
+            gather<kBytes>(corners, i, p);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3& row = pose.rotation.rows[k];
+                const Real turned = inner(Lanes3<Real>{Real(row.x), Real(row.y), Real(row.z)}, p);
+                (turned + Real(pose.translation[k])).store(triangles[i][k].data());
+            }
+        }
+    });
 }
 
-OBB_WIDE unsigned crossing_planes(const Triangle& one, const FourTriangles& others,
-                                  FourSides& sides_one, FourSides& sides_others) {
-    const FourTriangles ones{broadcast(one[0]), broadcast(one[1]), broadcast(one[2])};
-    const FourMask apart =
-        on_one_side(ones, others, sides_others) | on_one_side(others, ones, sides_one);
-    return bits_of(~apart);
+unsigned crossing_planes(const Triangle& one, const FourTriangles& others, FourSides& sides_one,
+                         FourSides& sides_others) {
+    unsigned crossing = 0;
+    in_registers([&]<std::size_t kBytes>() {
+        crossing = cross<kBytes>(one, others, sides_one, sides_others);
+    });
+    return crossing;
 }
 
 } // namespace obb

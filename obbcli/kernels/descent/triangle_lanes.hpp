@@ -2,7 +2,6 @@
 #pragma once
 
 #include "primitives/predicates.hpp"
-#include "shapes/lanes.hpp"
 #include "shapes/pose.hpp"
 #include "shapes/triangle.hpp"
 
@@ -11,8 +10,8 @@
 
 namespace obb {
 
-// Four triangles, vertex by vertex.
-using FourTriangles = std::array<Vector3<Four>, 3>;
+// Four triangles: vertex by vertex, coordinate by coordinate.
+using FourTriangles = std::array<std::array<std::array<double, 4>, 3>, 3>;
 
 // Where the vertices of four triangles are.
 using FourCorners = std::array<std::array<const Vec3*, 3>, 4>;
@@ -23,18 +22,22 @@ void gather_triangles(const FourCorners& corners, FourTriangles& triangles);
 void pose_triangles(const Pose& pose, const FourCorners& corners, FourTriangles& triangles);
 
 [[nodiscard]] inline Triangle lane(const FourTriangles& triangles, std::size_t k) {
-    return {lane(triangles[0], k), lane(triangles[1], k), lane(triangles[2], k)};
+    const auto vertex = [&](std::size_t i) {
+        const auto& v = triangles[i];
+        return Vec3{v[0][k], v[1][k], v[2][k]};
+    };
+    return {vertex(0), vertex(1), vertex(2)};
 }
 
-// For each vertex of a triangle whether it is surely above a plane, and below: all bits or none.
+// For each vertex of a triangle whether it is surely above a plane, and below: a bit a lane.
 struct FourSides {
-    alignas(kAlignment<Four>) std::array<FourMask, 3> above, below;
+    std::array<unsigned, 3> above, below;
 
     [[nodiscard]] PlaneSides lane(std::size_t k) const {
         PlaneSides sides;
         for (std::size_t i = 0; i < 3; ++i) {
-            sides.above |= static_cast<unsigned>(above[i][k] & (1 << i));
-            sides.below |= static_cast<unsigned>(below[i][k] & (1 << i));
+            sides.above |= (above[i] >> k & 1U) << i;
+            sides.below |= (below[i] >> k & 1U) << i;
         }
         return sides;
     }

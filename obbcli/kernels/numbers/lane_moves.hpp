@@ -147,30 +147,40 @@ OBB_INLINE Floats<kBytes> rounded_pairs(const Doubles<kBytes>& a, const Doubles<
     return result;
 }
 
-// A bit for each lane of eight that is set.
-template <std::size_t kBytes>
-OBB_INLINE unsigned bits_of(const typename Floats<kBytes>::Mask& mask) {
-#if defined(__SSE__) && __has_builtin(__builtin_shufflevector)
-    using Register = typename Floats<kBytes>::Register;
-    std::array<detail::Sixteen<float>, 2> parts;
-    if constexpr (kBytes == 32) {
-        const Register all = reinterpret_cast<Register>(mask.parts[0]);
-        parts = {__builtin_shufflevector(all, all, 0, 1, 2, 3),
-                 __builtin_shufflevector(all, all, 4, 5, 6, 7)};
-    } else {
-        parts = {reinterpret_cast<Register>(mask.parts[0]),
-                 reinterpret_cast<Register>(mask.parts[1])};
-    }
-    return static_cast<unsigned>(__builtin_ia32_movmskps(parts[0])) |
-           static_cast<unsigned>(__builtin_ia32_movmskps(parts[1])) << 4U;
-#else
-    const auto bits = std::bit_cast<std::array<std::uint32_t, 8>>(mask);
+// A bit for each lane that is set, of all registers of `Real`.
+template <typename Real>
+OBB_INLINE unsigned bits_of(const typename Real::Mask& mask) {
+    constexpr std::size_t kBytes = sizeof(typename Real::Register);
     unsigned result = 0;
-    for (std::size_t k = 0; k < 8; ++k) {
-        result |= (bits[k] & 1U) << k;
+    for (std::size_t r = 0; r < Real::kRegisters; ++r) {
+#if defined(__SSE2__) && __has_builtin(__builtin_shufflevector)
+        constexpr unsigned kLanes = Real::kInRegister * 16 / kBytes;
+        const auto all = reinterpret_cast<typename Real::Register>(mask.parts[r]);
+        const auto bits = [](const auto& part) __attribute__((always_inline)) {
+            if constexpr (kLanes == 4) {
+                return static_cast<unsigned>(__builtin_ia32_movmskps(part));
+            } else {
+                return static_cast<unsigned>(__builtin_ia32_movmskpd(part));
+            }
+        };
+        unsigned found = 0;
+        if constexpr (kBytes == 16) {
+            found = bits(all);
+        } else if constexpr (kLanes == 4) {
+            found = bits(__builtin_shufflevector(all, all, 0, 1, 2, 3)) |
+                    bits(__builtin_shufflevector(all, all, 4, 5, 6, 7)) << 4U;
+        } else {
+            found = bits(__builtin_shufflevector(all, all, 0, 1)) |
+                    bits(__builtin_shufflevector(all, all, 2, 3)) << 2U;
+        }
+        result |= found << (r * Real::kInRegister);
+#else
+        for (std::size_t k = 0; k < Real::kInRegister; ++k) {
+            result |= static_cast<unsigned>(mask.parts[r][k] & 1) << (r * Real::kInRegister + k);
+        }
+#endif
     }
     return result;
-#endif
 }
 
 } // namespace obb
