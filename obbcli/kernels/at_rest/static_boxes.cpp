@@ -125,23 +125,33 @@ OBB_INLINE void StaticQuery::push_meeting(const Opening& opening, unsigned meeti
     }
 }
 
-// The farthest first; the order of equal ones is that of the children.
-void StaticQuery::push_in_order(const Opening& opening, unsigned meeting, const float* nearness) {
+// The farthest first; the order of equal ones is that of the children. In doubles, for which of the
+// boxes meets first may be all that is told.
+void StaticQuery::push_in_order(const Opening& opening, unsigned meeting) {
     constexpr std::array<std::size_t, 4> kByChildren{0, 2, 3, 1};
-    std::array<std::size_t, 4> lanes;
+    const auto middle = [](const PosedTree& body, const NodeRef& ref) {
+        if (!ref.is_triangle()) {
+            return body.box(body.tree().nodes[ref.slot]).center;
+        }
+        const Triangle t = body.triangle_in_frame(ref);
+        return (1.0 / 3.0) * (t[0] + t[1] + t[2]);
+    };
+    std::array<std::pair<double, std::size_t>, 4> lanes;
     std::size_t count = 0;
     for (const std::size_t lane : kByChildren) {
         if ((meeting >> lane & 1U) == 0) {
             continue;
         }
+        const Pair pair = part_of(opening, lane);
+        const double distance = norm_1(middle(a_, pair.a) - middle(b_, pair.b));
         std::size_t place = count++;
-        for (; place > 0 && nearness[lanes[place - 1]] < nearness[lane]; --place) {
+        for (; place > 0 && lanes[place - 1].first < distance; --place) {
             lanes[place] = lanes[place - 1];
         }
-        lanes[place] = lane;
+        lanes[place] = {distance, lane};
     }
     for (std::size_t k = 0; k < count; ++k) {
-        push(part_of(opening, lanes[k]));
+        push(part_of(opening, lanes[k].second));
     }
 }
 
@@ -237,7 +247,7 @@ void StaticQuery::open_waiting() {
             meeting |= meeting_triangles(opening, nearness);
         }
         if (is_coarse_) {
-            push_in_order(opening, meeting, nearness);
+            push_in_order(opening, meeting);
         } else {
             push_meeting(opening, meeting, nearness);
         }

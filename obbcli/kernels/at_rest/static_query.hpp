@@ -83,7 +83,7 @@ class StaticQuery {
     [[nodiscard]] unsigned meeting_triangles(const Opening& opening, float* nearness);
     void push(const Pair& pair);
     void push_meeting(const Opening& opening, unsigned meeting, const float* nearness);
-    void push_in_order(const Opening& opening, unsigned meeting, const float* nearness);
+    void push_in_order(const Opening& opening, unsigned meeting);
     [[nodiscard]] bool may_triangle_meet(const NodeRef& ref_a, const NodeRef& ref_b,
                                          float& nearness) const;
     void open_leaf(const Pair& pair, bool opens_a);
