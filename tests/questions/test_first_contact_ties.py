@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from meshes.hostile import HOSTILE
 from meshes.surfaces import sheet
+from scenes.pairs import PLATE_GAP, POSE_CLASSES
 
 from obbcli import Body, FirstContact, Mesh, Motion, ObbTree, Pose, Status, first_contact
 
@@ -115,3 +116,16 @@ def test_bodies_that_meet_in_two_vertices_are_parted_across_their_motion():
 
     assert found.time_bounds == (GAP / SPEED, GAP / SPEED)
     assert found.stats.pops < FEW_POPS
+
+
+@pytest.mark.parametrize("slide", [(0.5, 0.25), (-0.125, 0.5), (0.03125, 0.0)])
+def test_plates_turned_anyhow_land_without_a_search_of_all_their_pairs(slide):
+    # Rounding moves every vertex of the turned plate: no two are as early as each other.
+    pair = POSE_CLASSES["plates"](10_000)
+    a, b = (Mesh(surface.vertices, surface.faces) for surface in (pair.a, pair.b))
+    velocity = np.array([*slide, -2 * PLATE_GAP])
+
+    found = first_contact(a, Body(b, Pose(pair.rotation, pair.translation), Motion(velocity)))
+
+    assert found.status is Status.CONTACT
+    assert found.stats.pops < FEW_POPS // 20
