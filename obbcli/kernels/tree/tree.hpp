@@ -128,16 +128,20 @@ struct TreeView {
         return {*p, *q, *r};
     }
 
+    // A damaged link of a file leads a triangle to any slot, but a file has no rows.
+    [[nodiscard]] bool is_mesh_row(const NodeRef& ref) const {
+        return ref.slot == kMeshRow && !rows.empty();
+    }
     // The same of a triangle that is known by its place in the tree, or by its row of the mesh.
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const {
-        if (ref.slot == kMeshRow) {
+        if (is_mesh_row(ref)) {
             const Corners& c = rows[ref.begin];
             return {vertices[c[0]], vertices[c[1]], vertices[c[2]]};
         }
         return triangle(ref.begin);
     }
     [[nodiscard]] std::uint32_t row_of(const NodeRef& ref) const {
-        return ref.slot == kMeshRow ? ref.begin : triangle_ids[ref.begin];
+        return is_mesh_row(ref) ? ref.begin : triangle_ids[ref.begin];
     }
 };
 
