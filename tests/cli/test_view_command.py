@@ -129,8 +129,9 @@ def test_exit_code_is_that_of_first_contact(here, obbtree, words, code):
 
 
 def test_picture_shows_both_bodies_and_the_marks(here, obbtree):
-    words = (*LINKS, "--vel-b", 1, 0, 0, "--duration", 5)
-    assert obbtree("view", *words, *SMALL, "-o", "contact.png").code == 0
+    # Large enough for the dot at the contact to have pixels of one colour.
+    words = (*LINKS, "--vel-b", 1, 0, 0, "--duration", 5, "--size", 320, 240)
+    assert obbtree("view", *words, "-o", "contact.png").code == 0
 
     red, green, blue = pixels("contact.png").reshape(-1, 3).T
 
