@@ -221,11 +221,38 @@ int faults(const Surface& s, const obb::BuildOptions& options) {
     return found;
 }
 
+// A query that is divided after any number of pops finds each pair once.
+int divided_wrongly(const Surface& s) {
+    obb::TreeBuilder whole(s.vertices, s.corners, {}, false, 2);
+    while (!whole.advance(1000)) {
+    }
+    const obb::TreeView tree = whole.view();
+    obb::StaticQuery alone(tree, {}, tree, pose(0), {.all_pairs = true});
+    while (!alone.advance(1000)) {
+    }
+    int found = 0;
+    for (std::uint64_t pops = 0; pops < 40; ++pops) {
+        for (const std::size_t count : {2, 6, 32}) {
+            obb::StaticQuery query(tree, {}, tree, pose(0), {.all_pairs = true});
+            query.advance(pops);
+            std::vector<obb::StaticQuery> parts = query.divide(count);
+            for (obb::StaticQuery& part : parts) {
+                while (!part.advance(1000)) {
+                }
+            }
+            query.join(parts);
+            found += std::ranges::equal(query.pairs(), alone.pairs()) ? 0 : 1;
+        }
+    }
+    return found;
+}
+
 } // namespace
 
 int main() {
     const Surface s = bumpy_torus();
-    const int wrong = faults(s, {}) + faults(s, {.split = obb::Split::kMedian}) +
+    const int wrong = divided_wrongly(s) + faults(s, {}) +
+                      faults(s, {.split = obb::Split::kMedian}) +
                       faults(s, {.split = obb::Split::kCenter, .leaf_size = 3});
     std::printf("%d answers differ\n", wrong);
     return wrong == 0 ? 0 : 1;

@@ -59,6 +59,10 @@ double StaticQuery::distance_bound(const Pair& pair) const {
 }
 
 std::vector<StaticQuery> StaticQuery::divide(std::size_t count) {
+    // What waits belongs to one part alone.
+    if (waiting_count_ > 0) {
+        open_waiting();
+    }
     std::vector<Pair> wide = std::move(stack_);
     while (!wide.empty() && wide.size() < count) {
         std::vector<Pair> next;
