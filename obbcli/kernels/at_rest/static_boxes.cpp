@@ -179,9 +179,11 @@ OBB_INLINE void StaticQuery::visit(const Pair& pair) {
     const Node* b = box_to_open(b_, pair.b, options_.boxes.max_depth_b);
     if (a != nullptr && b != nullptr) {
         const double size_a = size_of(a_, *a), size_b = size_of(b_, *b);
-        // Of sizes that are no numbers, in a damaged tree, both are opened.
-        a = size_a < kAlike * size_b ? nullptr : a;
-        b = size_b < kAlike * size_a ? nullptr : b;
+        const bool is_small_a = size_a < kAlike * size_b, is_small_b = size_b < kAlike * size_a;
+        // Of sizes that are no numbers or negative, in a damaged tree, both are opened.
+        if (is_small_a != is_small_b) {
+            (is_small_a ? a : b) = nullptr;
+        }
     } else if (a == nullptr && b == nullptr) {
         meet(pair);
         return;
