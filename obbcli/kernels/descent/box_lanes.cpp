@@ -1,5 +1,6 @@
 #include "descent/box_lanes.hpp"
 
+#include "descent/eight_boxes.hpp"
 #include "numbers/lane_moves.hpp"
 
 #include <limits>
@@ -43,14 +44,6 @@ namespace {
 constexpr double kFloatBound = 0x1p-17;
 constexpr double kFloatUnderflow = 0x1p-120;
 
-template <typename Real>
-using Lanes3 = std::array<Real, 3>;
-
-template <typename Real>
-OBB_INLINE Real inner(const Lanes3<Real>& a, const Lanes3<Real>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // Lanes of A's boxes and of B's, paired as kOfA and kOfB.
 template <typename Real>
 OBB_INLINE Real of_a(const Real& lanes) {
@@ -59,50 +52,6 @@ OBB_INLINE Real of_a(const Real& lanes) {
 template <typename Real>
 OBB_INLINE Real of_b(const Real& lanes) {
     return shuffled<2, 3, 3, 2>(lanes);
-}
-
-// Eight boxes but for their centres.
-template <typename Real>
-struct Boxes {
-    std::array<Lanes3<Real>, 3> axes;
-    Lanes3<Real> half_extents;
-};
-
-template <std::size_t kBytes>
-OBB_INLINE Boxes<Floats<kBytes>> placed(const EightFrame& frame, const EightNodes& nodes) {
-    using Real = Floats<kBytes>;
-    // Above the extents is the first number of the quaternion.
-    const auto h = gathered_fours<kBytes>([&](std::size_t k) __attribute__((always_inline)) {
-        return nodes[k]->half_extents.data();
-    });
-    const auto [w, x, y, z] = gathered_fours<kBytes>(
-        [&](std::size_t k) __attribute__((always_inline)) { return nodes[k]->rotation.data(); });
-    const Real square = (w * w + x * x) + (y * y + z * z);
-    // Of longer and shorter quaternions, which no builder writes, products might leave the range of
-    // floats.
-    const auto is_known = (square > Real(0x1p-60F)) & (square < Real(0x1p60F));
-    const Real s =
-        select(is_known, Real(2.0F) / square, Real(std::numeric_limits<float>::quiet_NaN()));
-    const Real sx = s * x, sy = s * y, sz = s * z;
-    const Real wx = sx * w, wy = sy * w, wz = sz * w;
-    const Real xx = sx * x, xy = sx * y, xz = sx * z;
-    const Real yy = sy * y, yz = sy * z, zz = sz * z;
-    const Real one(1.0F);
-    const std::array<Lanes3<Real>, 3> axes{{{one - yy - zz, xy + wz, xz - wy},
-                                            {xy - wz, one - xx - zz, yz + wx},
-                                            {xz + wy, yz - wx, one - xx - yy}}};
-    Boxes<Real> boxes;
-    const Real scale = Real::at(frame.node_scale.data());
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Lanes3<Real> row{Real::at(frame.matrix[i][0].data()),
-                               Real::at(frame.matrix[i][1].data()),
-                               Real::at(frame.matrix[i][2].data())};
-        for (std::size_t k = 0; k < 3; ++k) {
-            boxes.axes[k][i] = inner(row, axes[k]);
-        }
-        boxes.half_extents[i] = scale * h[i];
-    }
-    return boxes;
 }
 
 // From A's centres to B's, by pairs.
@@ -142,7 +91,9 @@ OBB_INLINE Lanes3<Floats<kBytes>> ways(const EightFrame& frame, const EightNodes
 template <std::size_t kBytes>
 OBB_INLINE void judge(const EightFrame& frame, const EightNodes& nodes, EightVerdicts& verdicts) {
     using Real = Floats<kBytes>;
-    const Boxes<Real> boxes = placed<kBytes>(frame, nodes);
+    const auto node = [&](std::size_t k)
+                          __attribute__((always_inline)) -> const Node& { return *nodes[k]; };
+    const Boxes<Real> boxes = placed_eight<kBytes>(frame, node);
     const Lanes3<Real> d = ways<kBytes>(frame, nodes);
     const Lanes3<Real>& h = boxes.half_extents;
     const Real size = h[0] + h[1] + h[2];

@@ -1,0 +1,67 @@
+// Eight boxes of nodes in lanes of floats, for whatever asks about pairs of them.
+#pragma once
+
+#include "numbers/lane_moves.hpp"
+#include "numbers/registers.hpp"
+#include "tree/node.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace obb {
+
+template <typename Real>
+using Lanes3 = std::array<Real, 3>;
+
+template <typename Real>
+OBB_INLINE Real inner(const Lanes3<Real>& a, const Lanes3<Real>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Eight boxes but for their centres.
+template <typename Real>
+struct Boxes {
+    std::array<Lanes3<Real>, 3> axes;
+    Lanes3<Real> half_extents;
+};
+
+// The boxes of eight nodes. A frame has the scale of each node's numbers, and the rows that turn
+// its axes; node(k) is the k-th, a Node.
+template <std::size_t kBytes, typename Frame, typename NodeOf>
+OBB_INLINE Boxes<Floats<kBytes>> placed_eight(const Frame& frame, const NodeOf& node) {
+    using Real = Floats<kBytes>;
+    // Above the extents is the first number of the quaternion.
+    const auto h = gathered_fours<kBytes>(
+        [&](std::size_t k) __attribute__((always_inline)) { return node(k).half_extents.data(); });
+    const auto [w, x, y, z] = gathered_fours<kBytes>(
+        [&](std::size_t k) __attribute__((always_inline)) { return node(k).rotation.data(); });
+    const Real square = (w * w + x * x) + (y * y + z * z);
+    // Of longer and shorter quaternions, which no builder writes, products might leave the range of
+    // floats.
+    const auto is_known = (square > Real(0x1p-60F)) & (square < Real(0x1p60F));
+    const Real s =
+        select(is_known, Real(2.0F) / square, Real(std::numeric_limits<float>::quiet_NaN()));
+    const Real sx = s * x, sy = s * y, sz = s * z;
+    const Real wx = sx * w, wy = sy * w, wz = sz * w;
+    const Real xx = sx * x, xy = sx * y, xz = sx * z;
+    const Real yy = sy * y, yz = sy * z, zz = sz * z;
+    const Real one(1.0F);
+    const std::array<Lanes3<Real>, 3> axes{{{one - yy - zz, xy + wz, xz - wy},
+                                            {xy - wz, one - xx - zz, yz + wx},
+                                            {xz + wy, yz - wx, one - xx - yy}}};
+    Boxes<Real> boxes;
+    const Real scale = Real::at(frame.node_scale.data());
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Lanes3<Real> row{Real::at(frame.matrix[i][0].data()),
+                               Real::at(frame.matrix[i][1].data()),
+                               Real::at(frame.matrix[i][2].data())};
+        for (std::size_t k = 0; k < 3; ++k) {
+            boxes.axes[k][i] = inner(row, axes[k]);
+        }
+        boxes.half_extents[i] = scale * h[i];
+    }
+    return boxes;
+}
+
+} // namespace obb
