@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.answers.contact import FirstContact
@@ -16,52 +16,17 @@ from obbcli.questions.border import damaged, quick_question, static_query, stats
 from obbcli.questions.budget import Budget
 from obbcli.questions.containment import Containment
 from obbcli.questions.describe import answer_told
-from obbcli.questions.legs.sampled import SampledQuery
-from obbcli.questions.legs.through_poses import PathQuery, legs_of
+from obbcli.questions.legs.through_poses import legs_of
+from obbcli.questions.motion_search import search_of
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.steady import SteadyQuery
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
-    from obbcli.answers.contact import Contact
     from obbcli.motion.body import Body, Shape
+    from obbcli.questions.motion_search import MotionSearch
 
     Queries = tuple[kernels.StaticQuery, kernels.ContactQuery | None, bool]
-
-
-class _Search(Protocol):
-    """How the first contact of one kind of motion is looked for."""
-
-    @property
-    def lower_bound(self) -> float:
-        """No contact in [0, lower_bound): proven. s."""
-
-    @property
-    def time(self) -> float:
-        """Up to when the search has come, s."""
-
-    @property
-    def counts(self) -> Counts:
-        """What the search has cost so far."""
-
-    @property
-    def pops(self) -> int:
-        """How many pairs were taken from queues so far."""
-
-    def step(self, pops: int, until: float) -> bool:
-        """Go on for so many pops, no further than `until`, s; return whether all is answered."""
-
-    def contact(self) -> Contact:
-        """Return what is known now."""
-
-
-def _search_of(pair: PairQuestion, *, any_contact: bool) -> _Search:
-    """Return the search that suits the motions and the method of a question."""
-    if pair.accuracy.method == "sampled" and not pair.is_at_rest:
-        return SampledQuery(pair, any_contact=any_contact)
-    if pair.is_steady:
-        return SteadyQuery(pair, any_contact=any_contact)
-    return PathQuery(pair, any_contact=any_contact)
 
 
 class Query:
@@ -138,7 +103,7 @@ class Query:
         query._spent = max(search.pops, 1)
         return query
 
-    def _start(self, pair: PairQuestion, search: _Search) -> None:
+    def _start(self, pair: PairQuestion, search: MotionSearch) -> None:
         self._pair = pair
         self._search = search
         self._solids: Containment | None = None
@@ -150,7 +115,7 @@ class Query:
 
     def _set_up(self, pair: PairQuestion, *, solid: bool, any_contact: bool) -> None:
         start = time.perf_counter()
-        self._start(pair, _search_of(pair, any_contact=any_contact))
+        self._start(pair, search_of(pair, any_contact=any_contact))
         if solid:
             self._solids = self._containment()
         self._seconds["query"] = time.perf_counter() - start
