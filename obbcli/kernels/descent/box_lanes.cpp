@@ -44,16 +44,6 @@ namespace {
 constexpr double kFloatBound = 0x1p-17;
 constexpr double kFloatUnderflow = 0x1p-120;
 
-// Lanes of A's boxes and of B's, paired as kOfA and kOfB.
-template <typename Real>
-OBB_INLINE Real of_a(const Real& lanes) {
-    return shuffled<0, 1, 0, 1>(lanes);
-}
-template <typename Real>
-OBB_INLINE Real of_b(const Real& lanes) {
-    return shuffled<2, 3, 3, 2>(lanes);
-}
-
 // From A's centres to B's, by pairs.
 template <std::size_t kBytes>
 OBB_INLINE Lanes3<Floats<kBytes>> ways(const EightFrame& frame, const EightNodes& nodes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "numbers/lane_moves.hpp"
+#include "numbers/lane_vectors.hpp"
 #include "numbers/registers.hpp"
 #include "tree/node.hpp"
 
@@ -11,12 +12,14 @@
 
 namespace obb {
 
+// Lanes of A's boxes and of B's, where each four are two of A and two of B, by their pairs.
 template <typename Real>
-using Lanes3 = std::array<Real, 3>;
-
+OBB_INLINE Real of_a(const Real& lanes) {
+    return shuffled<0, 1, 0, 1>(lanes);
+}
 template <typename Real>
-OBB_INLINE Real inner(const Lanes3<Real>& a, const Lanes3<Real>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+OBB_INLINE Real of_b(const Real& lanes) {
+    return shuffled<2, 3, 3, 2>(lanes);
 }
 
 // Eight boxes but for their centres.

@@ -2,17 +2,11 @@
 
 #include "exact/orientation.hpp"
 #include "numbers/lane_moves.hpp"
+#include "numbers/lane_vectors.hpp"
 
 namespace obb {
 namespace {
 
-template <typename Real>
-using Lanes3 = std::array<Real, 3>;
-
-template <typename Real>
-OBB_INLINE Real inner(const Lanes3<Real>& a, const Lanes3<Real>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 template <typename Real>
 OBB_INLINE Lanes3<Real> difference(const Lanes3<Real>& a, const Lanes3<Real>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};

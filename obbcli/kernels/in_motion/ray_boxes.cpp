@@ -30,15 +30,6 @@ constexpr double kUp = 1 + 0x1p-22;
 // are within u each, and this is 64 u. Quotients below the second may have lost digits.
 constexpr float kLoss = 0x1p-18F, kLostTime = 0x1p-100F;
 
-// Lanes of A's boxes and of B's, paired as kRayOfA and kRayOfB.
-template <typename Real>
-OBB_INLINE Real of_a(const Real& lanes) {
-    return shuffled<0, 1, 0, 1>(lanes);
-}
-template <typename Real>
-OBB_INLINE Real of_b(const Real& lanes) {
-    return shuffled<2, 3, 3, 2>(lanes);
-}
 template <typename Real>
 OBB_INLINE Lanes3<Real> of_a(const Lanes3<Real>& v) {
     return {of_a(v[0]), of_a(v[1]), of_a(v[2])};
