@@ -1,8 +1,7 @@
 #include "at_rest/containment_query.hpp"
 
-#include "exact/orientation.hpp"
+#include "at_rest/ray_crossing.hpp"
 #include "numbers/scale.hpp"
-#include "shapes/extremes.hpp"
 #include "work/slice.hpp"
 
 #include <algorithm>
@@ -11,23 +10,6 @@
 #include <utility>
 
 namespace obb {
-
-namespace {
-
-// The side of the edge from a to b that p is on, seen from above, with p moved by (e, e^2, 0) for
-// an infinitely small e: then a ray meets no edge, and edges that two triangles share are passed on
-// one side of both (Edelsbrunner and Muecke 1990, Simulation of simplicity). 0 only for edges that
-// are parallel to the ray: their triangles it does not meet.
-[[nodiscard]] Orientation moved_side(const Vec3& a, const Vec3& b, const Vec3& p) {
-    const Orientation found = orientation_xy(a, b, p);
-    if (found.sign != 0) {
-        return found;
-    }
-    const int by_x = (b.y < a.y) - (b.y > a.y);
-    return {by_x != 0 ? by_x : (b.x > a.x) - (b.x < a.x), found.exact};
-}
-
-} // namespace
 
 ContainmentQuery::ContainmentQuery(const TreeView& tree, const Pose& pose, std::vector<Vec3> points)
     : body_(tree, pose), points_(std::move(points)) {
@@ -111,31 +93,11 @@ bool ContainmentQuery::may_meet(const Node& node) const {
            std::fabs(from_center.y) <= reach_along(1) && from_center.z <= reach_along(2);
 }
 
-void ContainmentQuery::count(const Triangle& t) {
-    const Vec3& p = points_[point_];
-    if (p.x < smallest(t[0].x, t[1].x, t[2].x) || p.x > largest(t[0].x, t[1].x, t[2].x) ||
-        p.y < smallest(t[0].y, t[1].y, t[2].y) || p.y > largest(t[0].y, t[1].y, t[2].y) ||
-        p.z > largest(t[0].z, t[1].z, t[2].z)) {
-        return;
-    }
-    ++counts_.triangle_tests;
-    int turn = 0; // anticlockwise, seen from above
-    bool is_exact = false;
-    bool is_met = true;
-    for (std::size_t k = 0; k < 3 && is_met; ++k) {
-        const Orientation side = moved_side(t[k], t[(k + 1) % 3], p);
-        is_exact = is_exact || side.exact;
-        is_met = side.sign != 0 && (k == 0 || side.sign == turn);
-        turn = side.sign;
-    }
-    if (is_met) {
-        // The line meets the triangle, whose plane is not parallel to it, at p moved as at p: and
-        // p, which is not on the triangle, is above or below by more than it was moved.
-        const Orientation height = orientation(t[0], t[1], t[2], p);
-        is_exact = is_exact || height.exact;
-        winding_ += height.sign == -turn ? turn : 0;
-    }
-    counts_.exact_triangle_tests += is_exact ? 1 : 0;
+void ContainmentQuery::count(const Triangle& triangle) {
+    const RayCrossing crossing = ray_crossing(triangle, points_[point_]);
+    winding_ += crossing.turn;
+    counts_.triangle_tests += crossing.is_tested ? 1 : 0;
+    counts_.exact_triangle_tests += crossing.is_exact ? 1 : 0;
 }
 
 } // namespace obb

@@ -1,0 +1,53 @@
+// Between which heights does no surface come over a rectangle? What an escape row needs.
+#pragma once
+
+#include "overlap/solid_surface.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace obb {
+
+// An upright prism over a rectangle: heights run along `up`, the rectangle is a range along each of
+// `across`. The three are of length 1 and at right angles, both to 16 u.
+struct Prism {
+    Vec3 up;
+    std::array<Vec3, 2> across;
+    std::array<double, 2> low, high;
+};
+
+// No point of the surface over the rectangle has a height between these two: the surface of the
+// posed vertices, over the rectangle grown by 16 u, with everything that rounds on the safe side.
+struct HeightGap {
+    double from, to;
+};
+
+class HeightSearch {
+  public:
+    // The surface must outlive it.
+    explicit HeightSearch(const SolidSurface& surface) : surface_(&surface) {}
+
+    // The gaps between `floor` and `ceiling`, lowest first; heights up to `floor` and from `ceiling`
+    // count as if the surface were there. Boxes at most `thin` high are taken whole, and so is what
+    // is left after `most` of them: gaps are then fewer or narrower, never wrong.
+    [[nodiscard]] std::span<const HeightGap> find(const Prism& prism, double floor, double ceiling,
+                                                  double thin, std::size_t most);
+
+  private:
+    struct Span {
+        double low, high;
+    };
+    [[nodiscard]] static Span span_of(const Triangle& t, const Prism& prism);
+    [[nodiscard]] Span span_of(const Obb& box, const Prism& prism) const;
+    [[nodiscard]] bool is_settled(const Span& span) const;
+    void take(Span span);
+
+    const SolidSurface* surface_;
+    std::vector<NodeRef> stack_;
+    std::vector<Span> taken_; // apart from each other, ascending
+    std::vector<HeightGap> gaps_;
+};
+
+} // namespace obb

@@ -1,0 +1,44 @@
+// The closed surface of one posed body in the frame of an overlap query: what searches for points
+// and boxes go down.
+#pragma once
+
+#include "descent/posed_tree.hpp"
+#include "overlap/overlap_frame.hpp"
+#include "shapes/obb.hpp"
+#include "shapes/triangle.hpp"
+
+#include <cstdint>
+
+namespace obb {
+
+class SolidSurface {
+  public:
+    // The tree must outlive it.
+    SolidSurface(const TreeView& tree, const Pose& pose, const OverlapFrame& frame);
+
+    [[nodiscard]] const OverlapFrame& frame() const { return frame_; }
+    [[nodiscard]] const TreeView& tree() const { return body_.tree(); }
+
+    // A box in the frame, at most 1 + 2 skew() long axes. What it holds, the posed vertices rounded
+    // to double, may stick out of it by blur() along any axis of the frame or of the box.
+    [[nodiscard]] Obb box(const Node& node) const { return body_.box(node); }
+    [[nodiscard]] double blur() const { return blur_; }
+    // How far the pose's matrix is from orthonormal, and rounding.
+    [[nodiscard]] double skew() const { return skew_; }
+
+    // Corners in the frame, each within kPlaceError / 2 of the posed vertex.
+    [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
+    // The posed vertices themselves.
+    [[nodiscard]] Triangle world_triangle(const NodeRef& ref) const { return body_.triangle(ref); }
+    // As PosedTree::place_triangles(), in the frame.
+    void place_triangles(std::uint32_t begin, std::uint32_t count, FourTriangles& placed) const;
+    [[nodiscard]] std::uint32_t id(const NodeRef& ref) const { return body_.id(ref); }
+
+  private:
+    PosedTree body_;
+    OverlapFrame frame_;
+    double blur_ = 0;
+    double skew_ = 0;
+};
+
+} // namespace obb
