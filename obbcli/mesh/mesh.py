@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from obbcli.mesh.spacing import Spacing
+
 #: Triangle ids and vertex indices are stored as int32.
 MAX_COUNT = 2**31 - 1
 
@@ -52,6 +54,8 @@ class Mesh:
         parts: the parts of the file that were selected, with their rows; empty where all was taken.
         sag: how far triangles are at most from the exact surfaces that they were cut from (STEP),
             mesh units; None where the file holds triangles.
+        spacing: how far apart the file's coordinates were before they were scaled, in mesh units
+            since; None where they were not scaled, and tell it themselves.
 
     Raises:
         MeshError: no triangles, a wrong shape, an index out of range, a coordinate that is
@@ -70,6 +74,7 @@ class Mesh:
     unit: str | None
     parts: tuple[PartRows, ...]
     sag: float | None
+    spacing: float | None
 
     def __init__(
         self,
@@ -82,6 +87,7 @@ class Mesh:
         unit: str | None = None,
         parts: Iterable[PartRows] = (),
         sag: float | None = None,
+        spacing: float | None = None,
     ) -> None:
         prefix = f"{source}: " if source else ""
         checked = _checked_vertices(vertices, prefix)
@@ -95,6 +101,7 @@ class Mesh:
         put(self, "unit", unit)
         put(self, "parts", tuple(parts))
         put(self, "sag", sag)
+        put(self, "spacing", spacing)
 
     def __repr__(self) -> str:
         source = f", source={self.source!r}" if self.source else ""
@@ -115,8 +122,9 @@ class Mesh:
         if self.unit is None or self.unit == unit:
             return self._changed(unit=unit)
         vertices, note = converted(self.vertices, self.unit, unit)
-        sag = self.sag and float(converted(np.array([self.sag]), self.unit, unit)[0][0])
-        return self._changed(note, vertices=vertices, unit=unit, sag=sag)
+        told = np.array([self.sag or 0.0, self.coordinate_spacing.value])
+        sag, spacing = converted(told, self.unit, unit)[0].tolist()
+        return self._changed(note, vertices=vertices, unit=unit, sag=sag or None, spacing=spacing)
 
     def stated(self, unit: str | None) -> Mesh:
         """Return the mesh with the same coordinates, taken to be in another unit.
@@ -141,7 +149,8 @@ class Mesh:
             checked_unit(unit)
         vertices, note = scaled(self.vertices, factor)
         sag = self.sag and self.sag * float(factor)
-        return self._changed(note, vertices=vertices, unit=unit, sag=sag)
+        spacing = self.coordinate_spacing.value * float(factor)
+        return self._changed(note, vertices=vertices, unit=unit, sag=sag, spacing=spacing)
 
     def welded(self, distance: float) -> Mesh:
         """Return the mesh with vertices within `distance` at the place of the first of them.
@@ -177,6 +186,15 @@ class Mesh:
     def size(self) -> float:
         """Return the diagonal of `bounds`; infinite only where it exceeds the largest double."""
         return measure.diagonal(self.bounds)
+
+    @cached_property
+    def coordinate_spacing(self) -> Spacing:
+        """Return how far apart the file's coordinates are: no two of them could be nearer."""
+        from obbcli.mesh.spacing import Spacing, spacing_of
+
+        if self.spacing is not None:
+            return Spacing(self.spacing, "scaled")
+        return spacing_of(self.vertices, self.triangles)
 
     @cached_property
     def surface_centroid(self) -> NDArray[np.float64]:

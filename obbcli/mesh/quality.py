@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from obbcli.mesh.measure import degenerate, used_vertices
+from obbcli.mesh.spacing import are_float32
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,7 +62,7 @@ def grain_of(mesh: Mesh) -> Grain:
     # Scaled, so that neither squares nor products leave the doubles.
     exponent = int(np.frexp(np.abs(used).max())[1])
     largest = float(np.abs(used).max())
-    is_float32 = _are_float32(used)
+    is_float32 = are_float32(used)
     spacing = float(np.spacing(np.float32(largest)) if is_float32 else np.spacing(largest))
     edge, altitude, aspect, slivers = _features(mesh, exponent)
     sides = np.ldexp(mesh.bounds[1], -exponent) - np.ldexp(mesh.bounds[0], -exponent)
@@ -75,11 +76,6 @@ def grain_of(mesh: Mesh) -> Grain:
         slivers,
         float(sides.max() / sides.min()) if len(sides) else None,
     )
-
-
-def _are_float32(values: NDArray[np.float64]) -> bool:
-    with np.errstate(over="ignore", under="ignore"):
-        return bool((values.astype(np.float32) == values).all())
 
 
 def _unscaled(length: float | None, exponent: int) -> float | None:

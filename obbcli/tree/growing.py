@@ -71,6 +71,7 @@ class Growth(TreeInMemory):
             unit=mesh.unit,
             parts=mesh.parts,
             sag=mesh.sag,
+            spacing=mesh.spacing,
         )
         self._builder = kernels.TreeBuilder(
             mesh.vertices,

@@ -37,7 +37,7 @@ ALIGNMENT = 64
 FIXED = struct.Struct("<8sIIIIQQQQiI")
 _CRC_OFFSET = 16
 # What a description may leave out, and what that means.
-_UNSAID: dict[str, Any] = {"notes": [], "unit": None, "parts": [], "sag": None}
+_UNSAID: dict[str, Any] = {"notes": [], "unit": None, "parts": [], "sag": None, "spacing": None}
 NODE_BYTES = 64
 _CORNERS_BYTES, _ID_BYTES, _VERTEX_BYTES = 12, 4, 24
 
@@ -175,6 +175,7 @@ def _description(text: bytes, name: str, triangles: int) -> tuple[Description, S
         "unit": optional_text,
         "parts": list,
         "sag": (float, type(None)),
+        "spacing": (float, type(None)),
     }
     try:
         fields = _UNSAID | json.loads(text)
@@ -202,6 +203,7 @@ def _description(text: bytes, name: str, triangles: int) -> tuple[Description, S
         "unit": (fields["unit"] or "").isprintable(),
         "parts": parts is not None,
         "sag": description.sag is None or 0.0 < description.sag < inf,
+        "spacing": description.spacing is None or 0.0 <= description.spacing < inf,
     }
     for field, is_allowed in allowed.items():
         if not is_allowed:

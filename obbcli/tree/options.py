@@ -88,6 +88,8 @@ class Description:
         parts: the parts of the mesh file that were selected; empty where all was taken.
         sag: how far triangles are at most from exact surfaces of the mesh file, mesh units; None
             where it holds triangles.
+        spacing: how far apart the mesh file's coordinates were, in mesh units since, where they
+            were scaled; else None.
     """
 
     fit: Fit
@@ -101,6 +103,7 @@ class Description:
     unit: str | None = None
     parts: tuple[PartRows, ...] = ()
     sag: float | None = None
+    spacing: float | None = None
 
 
 def kernel_limits(leaf_size: int, max_depth: int | None) -> tuple[int, int]:

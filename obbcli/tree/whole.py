@@ -254,6 +254,7 @@ def mesh_of(arrays: TreeArrays, place: str) -> Mesh:
             unit=about.unit,
             parts=about.parts,
             sag=about.sag,
+            spacing=about.spacing,
         )
     except MeshError as fault:
         raise TreeFileError(place, str(fault), _REMEDY) from fault
