@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from obbcli.answers.contact import Contact, FirstContact
     from obbcli.answers.counts import QueryStats
     from obbcli.answers.distance import Distance
+    from obbcli.answers.overlap import Overlap
     from obbcli.answers.status import Status
     from obbcli.errors import (
         MeshError,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from obbcli.questions.distance import distance
     from obbcli.questions.first_contact import Query, first_contact
     from obbcli.questions.notes import notes
+    from obbcli.questions.overlap.overlap import overlap
     from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
     from obbcli.scene import Scene, SceneBody, SceneContact
     from obbcli.study.stability.battery import stability
@@ -60,6 +62,7 @@ _HOMES = {
     "MotionError": "errors",
     "ObbError": "errors",
     "ObbTree": "tree.tree",
+    "Overlap": "answers.overlap",
     "Part": "motion.assembly",
     "Pose": "motion.pose",
     "Query": "questions.first_contact",
@@ -80,6 +83,7 @@ _HOMES = {
     "load_mesh": "mesh",
     "load_parts": "motion.assembly",
     "notes": "questions.notes",
+    "overlap": "questions.overlap.overlap",
     "stability": "study.stability.battery",
     "sweep": "sweeps.sweep",
     "tradeoff": "study.tradeoff.tradeoff",
@@ -101,6 +105,7 @@ __all__ = [
     "MotionError",
     "ObbError",
     "ObbTree",
+    "Overlap",
     "Part",
     "Pose",
     "Query",
@@ -122,6 +127,7 @@ __all__ = [
     "load_mesh",
     "load_parts",
     "notes",
+    "overlap",
     "primitives",
     "stability",
     "sweep",

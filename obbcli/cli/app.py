@@ -15,6 +15,7 @@ _GROUPS = {
         "collide": "collide",
         "first-contact": "first_contact",
         "distance": "distance",
+        "overlap": "overlap",
     },
     "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},

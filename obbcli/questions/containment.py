@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from obbcli.mesh import Mesh
     from obbcli.motion.body import Body
     from obbcli.questions.pair_question import Trees
+    from obbcli.tree.tree import ObbTree
 
 # How the notes of scaled meshes begin.
 _SCALED = "coordinates "
@@ -54,7 +55,7 @@ class Containment:
         self, bodies: tuple[Body, Body], trees: Trees, at_start: kernels.StaticQuery
     ) -> None:
         for name, tree in zip("AB", trees, strict=True):
-            require_watertight(tree.mesh, f"{name} ({tree.source})" if tree.source else name)
+            require_watertight(tree.mesh, body_name(name, tree))
         self._bodies = bodies
         self._trees = trees
         self._at_start = at_start
@@ -126,21 +127,31 @@ def require_watertight(mesh: Mesh, where: str) -> None:
     Raises:
         MeshError: it is not watertight; the message says where, and which welding closes it.
     """
+    fault = why_open(mesh)
+    if fault is not None:
+        raise MeshError(where, fault, _remedy(mesh))
+
+
+def why_open(mesh: Mesh) -> str | None:
+    """Return what keeps a mesh from being a solid, and where; None of a solid."""
     if mesh.is_watertight:
-        return
+        return None
     found = bad_seams(mesh.corner_ids)
     if found is None:
-        fault = "all its triangles are collapsed to edges or points"
-    else:
-        count, seam = found
-        ends = mesh.vertices[mesh.triangles[seam.triangle]]
-        start, end = (tuple(ends[(seam.corner + k) % 3].tolist()) for k in (0, 1))
-        edges = "1 edge does" if count == 1 else f"{count} edges do"
-        fault = (
-            f"{edges} not join two triangles turned alike, such as that from {start} to {end} "
-            f"of triangle {seam.triangle}, {_why(seam.along, seam.against)}"
-        )
-    raise MeshError(where, f"is not watertight: {fault}", _remedy(mesh))
+        return "is not watertight: all its triangles are collapsed to edges or points"
+    count, seam = found
+    ends = mesh.vertices[mesh.triangles[seam.triangle]]
+    start, end = (tuple(ends[(seam.corner + k) % 3].tolist()) for k in (0, 1))
+    edges = "1 edge does" if count == 1 else f"{count} edges do"
+    return (
+        f"is not watertight: {edges} not join two triangles turned alike, such as that from "
+        f"{start} to {end} of triangle {seam.triangle}, {_why(seam.along, seam.against)}"
+    )
+
+
+def body_name(name: str, tree: ObbTree) -> str:
+    """Return what errors call a body: A or B, and its file."""
+    return f"{name} ({tree.source})" if tree.source else name
 
 
 def _remedy(mesh: Mesh) -> str:

@@ -27,6 +27,7 @@ _DOCUMENTS = {
     "error": ("standard error of a command with --json that fails", "files"),
     "first-contact": ("obbtree first-contact --json", "answers"),
     "info": ("obbtree info --json", "files"),
+    "overlap": ("obbtree overlap --json", "overlaps"),
     "scene": ("obbtree scene --json", "answers"),
     "stability": ("obbtree stability --json", "studies"),
     "sweep": ("the first line of the results of obbtree sweep", "files"),

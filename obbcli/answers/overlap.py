@@ -1,0 +1,160 @@
+"""How two bodies lie to each other at rest, and how deep one reaches into the other, frozen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from obbcli.answers.contact import Vector  # noqa: TC001  # kinds of fields are read
+from obbcli.answers.counts import QueryStats  # noqa: TC001
+from obbcli.answers.status import Inner  # noqa: TC001
+
+RelationWord: TypeAlias = Literal[
+    "clear",
+    "near",
+    "touching",
+    "overlapping",
+    "contained",
+    "duplicate",
+    "crossing",
+    "unresolved",
+]
+DepthWord: TypeAlias = Literal["thickness", "protrusion_a", "protrusion_b"]
+Bounds: TypeAlias = tuple[float, float]
+
+MEETING: tuple[RelationWord, ...] = ("overlapping", "contained", "duplicate", "crossing")
+"""The relations of bodies that share more than a touch."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Band:
+    """What counts as touching: a gap and an overlap that are forgiven.
+
+    Attributes:
+        gap: mesh units; surfaces no further apart than this touch.
+        overlap: mesh units; bodies touch whose thickness and protrusions are no more than this.
+        slack: mesh units; a length is at most `gap` or `overlap` where its bracket ends by this
+            much beyond it: no bracket can tell equal lengths apart. 1e-9 of the pair's size.
+        reason: where the numbers come from, a sentence.
+    """
+
+    gap: float
+    overlap: float
+    slack: float
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gap:
+    """How far apart two surfaces are; (0, 0) and nothing else where they touch.
+
+    Attributes:
+        bounds: mesh units; (lo, hi), both proven.
+        point_a: where on A hi was measured, world coordinates.
+        point_b: where on B.
+        triangle_a: row of A's mesh file that `point_a` lies in.
+        triangle_b: row of B's mesh file that `point_b` lies in.
+    """
+
+    bounds: Bounds
+    point_a: Vector | None = None
+    point_b: Vector | None = None
+    triangle_a: int | None = None
+    triangle_b: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Depth:
+    """How deep, as a proven bracket.
+
+    Attributes:
+        bounds: mesh units; (lo, hi), both proven. (0, 0) where nothing overlaps, by proof.
+        point: where lo is attained, world coordinates: the centre of a ball inside both (of a
+            thickness), or a point of the one surface inside the other solid. None where lo is 0.
+        triangle_a: row of A's mesh file that is nearest to the point, or that holds it. None
+            without a point.
+        triangle_b: the same of B.
+    """
+
+    bounds: Bounds
+    point: Vector | None = None
+    triangle_a: int | None = None
+    triangle_b: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeparationAlong:
+    """How far A has to go in a direction to be free of B for good.
+
+    Attributes:
+        direction: unit, world coordinates.
+        bounds: mesh units; (lo, hi): at hi and beyond A touches B nowhere, at lo or a rounding
+            before it still does. (0, 0) where A never touches B on its way. hi is None where a
+            limit ended the search.
+        error_bound: mesh units; by how much any vertex is off its path, as positions are rounded
+            to double.
+    """
+
+    direction: Vector
+    bounds: tuple[float, float | None]
+    error_bound: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Overlap:
+    """How two bodies lie to each other at t = 0, as solids where both are closed.
+
+    Fields that do not apply, or were not asked for, are None.
+
+    Attributes:
+        relation: `"clear"`: further apart than the wanted distance; `"near"`: closer than that, and
+            apart; `"touching"`: within the band; `"overlapping"`; `"contained"`: one solid lies in
+            the other, up to the band; `"duplicate"`: both are the same solid, up to the band;
+            `"crossing"`: triangles meet of a surface that does not close; `"unresolved"`: a limit
+            was reached before it was known.
+        contained: of solids that are `"contained"`: `"a"` where A lies in B, `"b"` where B in A.
+        band: what counted as touching, and why.
+        distance: how far apart the surfaces are.
+        thickness: the diameter of the largest ball inside both solids.
+        protrusion_a: how deep A's surface reaches into B: the distance from B's surface of A's
+            deepest point inside B.
+        protrusion_b: how deep B's surface reaches into A.
+        deeper: whether the thickness or a protrusion exceeds `deeper_than`; None where that was
+            not asked, or is not known.
+        by: which of them was found to exceed it first.
+        separation_along: how far A has to go in the direction asked about.
+        reason: why there are no depths: which surface does not close, and where.
+        complete: whether the search ended before a limit. Where not, brackets are wide.
+        stats: what the question cost.
+    """
+
+    relation: RelationWord
+    contained: Inner | None = None
+    band: Band
+    distance: Gap | None = None
+    thickness: Depth | None = None
+    protrusion_a: Depth | None = None
+    protrusion_b: Depth | None = None
+    deeper: bool | None = None
+    by: DepthWord | None = None
+    separation_along: SeparationAlong | None = None
+    reason: str | None = None
+    complete: bool = True
+    stats: QueryStats
+
+    @property
+    def overlaps(self) -> bool:
+        """Whether the bodies share more than a touch.
+
+        Raises:
+            UnresolvedError: a limit was reached before that was known.
+        """
+        if self.relation == "unresolved":
+            from obbcli.errors import UnresolvedError
+
+            raise UnresolvedError(
+                "overlaps",
+                "the question stopped at a limit before its answer was known",
+                "raise max_iterations or timeout",
+            )
+        return self.relation in MEETING

@@ -1,0 +1,151 @@
+"""`obbtree overlap`: do two solids touch or overlap, and how deep?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
+from obbcli.cli.options.option import Command, option
+from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
+from obbcli.cli.options.words import Finite
+from obbcli.cli.output import emit
+
+if TYPE_CHECKING:
+    from obbcli.cli.inputs import Input
+    from obbcli.cli.options.placement import QuestionOptions
+    from obbcli.cli.options.two_bodies import TwoBodyOptions
+    from obbcli.questions.overlap.asked import Asked
+    from obbcli.report.record import Record
+
+# The fields of `Accuracy` that say something here; those of `obbcli.questions.overlap.asked`, which
+# is not imported for help.
+_CONCERNS = frozenset({"clearance", "max_iterations", "timeout"})
+
+
+@click.command(
+    "overlap",
+    cls=Command,
+    short_help="Do two solids touch or overlap, and how deep?",
+    epilog="""\b
+Examples:
+  obbtree overlap pin.stl plate.stl
+  obbtree overlap lid.stl box.stl --deeper-than 0.1 --exit-code --quiet
+  obbtree overlap bolt.ply nut.obj --translate-b 0 0 0.1 --along 0 0 1 --json
+""",
+)
+@option(
+    QUESTION,
+    "--tolerance",
+    type=Finite(0.0),
+    metavar="E",
+    help="Relative width of brackets, never below 1e-9 sizes, in mesh units [default: 0.01].",
+)
+@option(
+    QUESTION,
+    "--deeper-than",
+    type=Finite(0.0),
+    metavar="O",
+    help="Ask whether a depth exceeds O, in mesh units [default: ask for values].",
+)
+@option(
+    QUESTION,
+    "--touch",
+    nargs=2,
+    type=Finite(0.0),
+    metavar="GAP OVERLAP",
+    help="What still counts as touching, in mesh units [default: the files' own rounding].",
+)
+@option(
+    QUESTION,
+    "--along",
+    nargs=3,
+    type=Finite(),
+    metavar="X Y Z",
+    help="Ask how far, in mesh units, A has to go this way to be free for good [default: do not].",
+)
+@about_two("Exit with 1 where they overlap, or are deeper than O; 0 where not.")
+def command(asked: TwoBodyOptions, **flags: Any) -> int:
+    """Do A and B, as solids, touch or overlap, and how deep is one in the other?
+
+    A and B are mesh files or .obbt trees; one of them may be - for standard input. The relation is
+    one of clear, near, touching, overlapping, contained, duplicate, crossing and unresolved; every
+    number is a proven bracket. Surfaces that do not close have no depths.
+    """
+    from obbcli.report.overlap import overlap_bare, overlap_tables
+
+    _refuse_what_says_nothing(asked)
+    question = asked.question()
+    wanted = _wanted(flags)
+    files = asked.read()
+    with naming_options(question):
+        record = _ask(asked, question, files, wanted)
+    emit(record, overlap_tables, asked.common, bare=overlap_bare)
+    return _exit_code(record, asked=asked.exit_code)
+
+
+def _refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
+    """Refuse options that other questions know: to ignore them would make the answer a lie."""
+    for name, value in asked.motion._asdict().items():
+        if value is not None:
+            remedy = "leave it out, or see obbtree first-contact"
+            raise UsageError(_option(name), "moves bodies; the overlap is that at t = 0", remedy)
+    for name in asked.accuracy.given():
+        if name not in _CONCERNS:
+            raise UsageError(_option(name), "says nothing about an overlap", "leave it out")
+
+
+def _option(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def _wanted(flags: dict[str, Any]) -> Asked:
+    """Return what is asked about the overlap.
+
+    Raises:
+        UsageError: a number is refused.
+    """
+    from obbcli.questions.overlap.asked import Asked
+
+    given = {name: value for name, value in flags.items() if value is not None}
+    with usage_errors():
+        return Asked.of(**given)
+
+
+def _ask(
+    asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, Input], wanted: Asked
+) -> Record:
+    """Put the question and return its record."""
+    from obbcli.questions.overlap.overlap import overlap_of
+    from obbcli.report.overlap import overlap_record
+
+    pair = question.pair(files)
+    answer = overlap_of(pair, wanted)
+    return with_load_time(overlap_record(asked.setting(files, pair), wanted, answer), files)
+
+
+def _exit_code(record: Record, *, asked: bool) -> int:
+    """Return the exit code of an answer; `asked` is whether overlap has one of its own."""
+    from obbcli.answers.overlap import MEETING
+
+    result = record["result"]
+    if record["asked"]["deeper_than"] is None:
+        is_open, is_deep = result["relation"] == "unresolved", result["relation"] in MEETING
+    else:
+        is_open, is_deep = result["deeper"] is None, bool(result["deeper"])
+    if is_open:
+        return ExitCode.UNRESOLVED
+    return ExitCode.CONTACT if asked and is_deep else ExitCode.ANSWERED
+
+
+def _hide_what_says_nothing() -> None:
+    """Keep options that are only known to be refused by name out of the help."""
+    for param in command.params:
+        group = getattr(param, "group", "")
+        if group == "Motion" or (group == "Accuracy" and param.name not in _CONCERNS):
+            assert isinstance(param, click.Option)
+            param.hidden = True
+
+
+_hide_what_says_nothing()

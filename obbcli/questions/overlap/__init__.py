@@ -1,0 +1,1 @@
+"""How two bodies lie to each other at rest: relation, depths, the way out."""

@@ -1,0 +1,88 @@
+"""What is asked about an overlap, checked: `Asked`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+from typing import TYPE_CHECKING, NamedTuple
+
+from obbcli.errors import MotionError
+from obbcli.questions.overlap.along import unit_direction
+from obbcli.questions.overlap.band import checked_touch
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from obbcli.accuracy import Accuracy
+    from obbcli.answers.contact import Vector
+
+TOLERANCE = 1e-2
+"""The relative width asked of brackets where the caller asks for none."""
+CONCERNS = frozenset({"clearance", "max_iterations", "timeout"})
+"""The fields of `Accuracy` that say something about an overlap."""
+
+
+class Asked(NamedTuple):
+    """What is asked about an overlap, beside the bodies.
+
+    Attributes:
+        tolerance: the relative width asked of brackets.
+        deeper_than: mesh units; whether a depth exceeds it is asked, and then no value.
+        touch: gap and overlap that count as touching, mesh units. None: the default.
+        direction: unit; the way on which A is to leave B. None: not asked.
+        values: whether depths are to be narrowed down to the tolerance: `"all"`; `"deep"`, those
+            of bodies that do more than touch; `"none"`, as far as the answer needs it.
+    """
+
+    tolerance: float = TOLERANCE
+    deeper_than: float | None = None
+    touch: tuple[float, float] | None = None
+    direction: Vector | None = None
+    values: str = "all"
+
+    @classmethod
+    def of(
+        cls,
+        tolerance: float = TOLERANCE,
+        deeper_than: float | None = None,
+        touch: Sequence[float] | None = None,
+        along: ArrayLike | None = None,
+    ) -> Asked:
+        """Return what is asked, as `overlap` takes it.
+
+        Raises:
+            MotionError: an argument is no number that it may be; `where` is its name.
+        """
+        width = _number("tolerance", tolerance)
+        if width == 0:
+            fault = "is 0, which no bracket reaches"
+            raise MotionError("tolerance", fault, "use a number above 0, such as 0.01")
+        limit = None if deeper_than is None else _number("deeper_than", deeper_than)
+        band = None if touch is None else checked_touch(touch)
+        direction = None if along is None else unit_direction(along)
+        return cls(width, limit, band, direction, "all" if limit is None else "none")
+
+
+def refuse_other_accuracy(accuracy: Accuracy) -> None:
+    """Refuse fields of `Accuracy` that say nothing about an overlap: they are never ignored.
+
+    Raises:
+        MotionError: one of them has another value than its default.
+    """
+    for field in fields(accuracy):
+        value = getattr(accuracy, field.name)
+        if field.name not in CONCERNS and value != field.default:
+            raise MotionError(field.name, "says nothing about an overlap", "leave it out")
+
+
+def _number(name: str, value: object) -> float:
+    """Return a finite float of at least 0."""
+    try:
+        number = float(value)  # type: ignore[arg-type]  # whatever is no number raises here
+    except (TypeError, ValueError, OverflowError) as fault:
+        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0") from fault
+    if isinstance(value, (str, bool)) or not 0 <= number < math.inf:
+        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0")
+    return number

@@ -1,0 +1,145 @@
+"""The record of `obbtree overlap` and its table."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+from obbcli.report.record import answer_document
+from obbcli.report.rows import cost_rows, source_rows
+from obbcli.report.table import Table, length, point
+
+if TYPE_CHECKING:
+    from obbcli.answers.overlap import Overlap
+    from obbcli.questions.overlap.asked import Asked
+    from obbcli.report.record import Record, Setting
+
+_SENTENCES = {
+    "clear": "apart",
+    "near": "apart, but closer than wanted",
+    "touching": "they touch, within the band",
+    "overlapping": "each has a part in the other",
+    "contained": "one lies in the other",
+    "duplicate": "both are the same solid",
+    "crossing": "triangles meet of a surface that does not close",
+    "unresolved": "a limit was reached before the answer was known",
+}
+_DEPTHS = {
+    "thickness": "thickness",
+    "protrusion_a": "A into B",
+    "protrusion_b": "B into A",
+}
+
+
+def overlap_record(setting: Setting, asked: Asked, answer: Overlap) -> Record:
+    """Return the record of a question.
+
+    Args:
+        setting: what was asked about.
+        asked: what was asked.
+        answer: what came out.
+    """
+    record = answer_document("overlap", setting, overlap_part(answer), answer.stats)
+    part = {"tolerance": asked.tolerance, "deeper_than": asked.deeper_than}
+    tail = {name: record.pop(name) for name in ("result", "stats")}
+    return record | {"asked": part} | tail
+
+
+def overlap_part(answer: Overlap) -> Record:
+    """Return what documents say of an answer: its fields, less what it cost."""
+    part = {field.name: plain(getattr(answer, field.name)) for field in fields(answer)}
+    del part["stats"]
+    return part
+
+
+def plain(value: object) -> Any:
+    """Return a value of an answer as documents hold it: classes as objects, tuples as lists."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    return [plain(part) for part in value] if isinstance(value, tuple) else value
+
+
+def overlap_tables(record: Record) -> list[Table]:
+    """Return the table of a record."""
+    result = record["result"]
+    rows = [
+        *source_rows(record),
+        ("relation", relation_words(result)),
+        ("answer", _SENTENCES[result["relation"]]),
+        *_deeper_rows(record),
+        *distance_rows(result),
+        *depth_rows(result),
+        *_along_rows(result),
+        ("band", _band(result["band"])),
+    ]
+    if result["reason"] is not None:
+        rows.append(("no depths", result["reason"]))
+    if not result["complete"]:
+        rows.append(("limit", "a limit was reached: brackets are wider than asked for"))
+    return [Table([*rows, *cost_rows(record["stats"])])]
+
+
+def overlap_bare(record: Record) -> str:
+    """Return the relation's word."""
+    return f"{record['result']['relation']}\n"
+
+
+def relation_words(result: Record) -> str:
+    """Return the relation, and of a contained solid which it is."""
+    inner = result["contained"]
+    if inner is None:
+        return str(result["relation"])
+    return f"{result['relation']}: {inner.upper()} in {'A' if inner == 'b' else 'B'}"
+
+
+def distance_rows(result: Record) -> list[tuple[str, str]]:
+    """Return the row that says how far apart surfaces are, where they are."""
+    gap = result["distance"]
+    if gap is None or gap["bounds"] == [0, 0]:
+        return []
+    return [("distance", bracket(gap["bounds"]))]
+
+
+def depth_rows(result: Record) -> list[tuple[str, str]]:
+    """Return a row for each depth that is known."""
+    rows = []
+    for name, words in _DEPTHS.items():
+        depth = result[name]
+        if depth is None:
+            continue
+        place = "" if depth["point"] is None else f", at {point(depth['point'])}"
+        rows.append((words, f"{bracket(depth['bounds'])}{place}"))
+    return rows
+
+
+def bracket(bounds: list[float]) -> str:
+    """Return a bracket, six digits of each end."""
+    low, high = bounds
+    if low == high:
+        return f"{length(low)}, proven"
+    return f"{length(low)} to {length(high)}, proven"
+
+
+def _deeper_rows(record: Record) -> list[tuple[str, str]]:
+    limit, result = record["asked"]["deeper_than"], record["result"]
+    if limit is None:
+        return []
+    if result["deeper"] is None:
+        said = "not known"
+    else:
+        said = f"yes, by {_DEPTHS[result['by']]}" if result["deeper"] else "no"
+    return [(f"deeper than {length(limit)}", said)]
+
+
+def _along_rows(result: Record) -> list[tuple[str, str]]:
+    way = result["separation_along"]
+    if way is None:
+        return []
+    low, high = way["bounds"]
+    far = f"at least {length(low)}; a limit was reached" if high is None else bracket([low, high])
+    return [(f"A is free along {point(way['direction'])}", f"after {far}")]
+
+
+def _band(band: Record) -> str:
+    gap, overlap = length(band["gap"]), length(band["overlap"])
+    return f"gap {gap}, overlap {overlap}: {band['reason']}"
