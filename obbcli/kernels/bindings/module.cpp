@@ -32,6 +32,7 @@ NB_MODULE(_core, m) {
     bind_steady_pairs(m);
     bind_sweep(m);
     bind_containment(m);
+    bind_solid_probe(m);
     bind_primitives(m);
     bind_distance(m);
     bind_swept_pairs(m);

@@ -29,10 +29,10 @@ constexpr double kRowError = 64 * kUnitRoundoff;
 
 } // namespace
 
-// Let the gap be from c to c1 over the rectangle, c1 above the cell, and a point of it outside: then
-// all of it is. From a point p of the cell in the solid, which is not in the gap, and therefore not
-// above c, the way along `up` stays over the rectangle until it comes into the gap, and meets the
-// surface before.
+// Let the gap be from c to c1 over the rectangle, c1 above the cell, and a point of it outside:
+// then all of it is. From a point p of the cell in the solid, which is not in the gap, and
+// therefore not above c, the way along `up` stays over the rectangle until it comes into the gap,
+// and meets the surface before.
 std::optional<EscapeRow> EscapeSearch::find(std::span<const Vec3> corners, const Vec3& direction,
                                             const Vec3& side, const RowEffort& effort) {
     const Vec3 up = unit_or(direction, {0, 0, 0});

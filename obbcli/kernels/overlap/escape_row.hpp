@@ -1,5 +1,5 @@
-// A bound on how deep points of a cell lie in a solid that is linear in the point: who goes straight
-// along a direction is out of the solid after at most so much.
+// A bound on how deep points of a cell lie in a solid that is linear in the point: who goes
+// straight along a direction is out of the solid after at most so much.
 #pragma once
 
 #include "overlap/height_gaps.hpp"

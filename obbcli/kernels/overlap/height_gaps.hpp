@@ -29,9 +29,9 @@ class HeightSearch {
     // The surface must outlive it.
     explicit HeightSearch(const SolidSurface& surface) : surface_(&surface) {}
 
-    // The gaps between `floor` and `ceiling`, lowest first; heights up to `floor` and from `ceiling`
-    // count as if the surface were there. Boxes at most `thin` high are taken whole, and so is what
-    // is left after `most` of them: gaps are then fewer or narrower, never wrong.
+    // The gaps between `floor` and `ceiling`, lowest first; heights up to `floor` and from
+    // `ceiling` count as if the surface were there. Boxes at most `thin` high are taken whole, and
+    // so is what is left after `most` of them: gaps are then fewer or narrower, never wrong.
     [[nodiscard]] std::span<const HeightGap> find(const Prism& prism, double floor, double ceiling,
                                                   double thin, std::size_t most);
 

@@ -26,8 +26,8 @@ struct Reach {
 
 [[nodiscard]] int unit_of(const TreeView& tree, const Pose& pose) {
     const double shift = norm_inf(pose.translation);
-    const int unit = shift > 0 ? std::max(tree.scale_exponent, exponent_of(shift))
-                               : tree.scale_exponent;
+    const int unit =
+        shift > 0 ? std::max(tree.scale_exponent, exponent_of(shift)) : tree.scale_exponent;
     if (unit > 1020 && !pose.is_identity()) {
         throw std::domain_error("posed coordinates would exceed the range of double (about 1e307)");
     }
@@ -83,17 +83,17 @@ OverlapFrame overlap_frame(const TreeView& a, const Pose& pose_a, const TreeView
         const double high = std::min(of_a.high[k], of_b.high[k]);
         middle[k] = 0.5 * (low + high);
         offset = larger(offset, std::fabs(middle[k]));
-        extent = larger(extent, larger(of_a.high[k], of_b.high[k]) -
-                                    smaller(of_a.low[k], of_b.low[k]));
+        extent =
+            larger(extent, larger(of_a.high[k], of_b.high[k]) - smaller(of_a.low[k], of_b.low[k]));
     }
     if (!(extent > 0 && extent < 64 && offset < 64)) {
         frame.exponent += 4;
         return frame;
     }
-    const Vec3 origin = offset > 2 * extent ? Vec3{short_of(middle.x, extent),
-                                                   short_of(middle.y, extent),
-                                                   short_of(middle.z, extent)}
-                                            : Vec3{0, 0, 0};
+    const Vec3 origin = offset > 2 * extent
+                            ? Vec3{short_of(middle.x, extent), short_of(middle.y, extent),
+                                   short_of(middle.z, extent)}
+                            : Vec3{0, 0, 0};
     double farthest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double low = smaller(of_a.low[k], of_b.low[k]) - origin[k];

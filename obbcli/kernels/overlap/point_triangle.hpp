@@ -67,8 +67,9 @@ OBB_INLINE Real sum_of_sizes(const Lanes3<Real>& a) {
 //
 // Lower bound. For any vector n whatever the distance is at least the least n.c / |n| of the
 // corners c. The products are off by 3 u |n| r, corners by u r, length and quotient by 5 u of the
-// result: 8 u (result + r). Where the point is near, n must not be the foot, which is mostly noise
-// then, but the triangle's normal, or the foot made perpendicular to its edge once more.
+// result: 8 u (result + r). The better of two is taken: the foot, and where the point is so near
+// that the foot is mostly noise, the triangle's normal or the foot made perpendicular to its edge
+// once more.
 //
 // Squares below 2^-800 may have lost digits and prove nothing. Whatever else underflows is below
 // 2^-600, and kPlaceError, which is added to `high` and taken off `low`, has that to spare.
@@ -119,13 +120,14 @@ OBB_INLINE LaneFeet<Real> lane_feet(const LaneTriangles<Real>& c) {
                          detail::sum_of_sizes(c[2]));
     const Real place(4 * kUnitRoundoff); // kPlaceError
     const Real length = root_of(square);
-    const Real along_normal =
-        lower(lower(inner(normal, c[0]), inner(normal, c[1])), inner(normal, c[2]));
-    const Real size = inner(normal, normal);
-    const Real value = upper(along_normal / root_of(upper(size, least)), zero);
+    const auto parted = [&](const Lanes3<Real>& d) __attribute__((always_inline)) {
+        const Real size = inner(d, d);
+        const Real corner = lower(lower(inner(d, c[0]), inner(d, c[1])), inner(d, c[2]));
+        return select(size > least, corner / root_of(upper(size, least)), zero);
+    };
+    const Real value = upper(upper(parted(normal), parted(way)), zero);
     const Real low = value - Real(8.0) * unit * (value + r) - place;
-    return {select(size > least, upper(low, zero), zero),
-            length + Real(16.0) * unit * (length + r) + place, way};
+    return {upper(low, zero), length + Real(16.0) * unit * (length + r) + place, way};
 }
 
 } // namespace obb

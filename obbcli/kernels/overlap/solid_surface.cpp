@@ -3,7 +3,7 @@
 #include "numbers/scale.hpp"
 #include "shapes/extremes.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 namespace obb {
@@ -13,7 +13,8 @@ namespace obb {
 // tree's proof is for { |axes . (p - center)| <= half extents }, which differs by a few u from the
 // box; centre and axes are placed with 6 roundings a coordinate; and whoever projects on an axis
 // has 16 roundings. That is below 128 u S a coordinate, sqrt(3) times as much along an axis, and
-// 2^-43 is 1024 u. What is 2^-900 of the unit vanishes.
+// 2^-43 is 1024 u. Subnormal products and sums are off by 2^-1074 mesh units each besides, and what
+// is 2^-900 of the frame's unit vanishes.
 //
 // Skew. Of the rotated axes R b_i and R b_j the product differs from that of b_i and b_j by at most
 // |b_i|_1 |b_j|_1 <= 3 times the skew of R; the axes b are orthonormal to 16 u, and rounded again.
@@ -22,7 +23,7 @@ SolidSurface::SolidSurface(const TreeView& tree, const Pose& pose, const Overlap
     const Vec3 shift = scaled(pose.translation, -frame.exponent);
     body_.set_frame(pose.rotation, shift - frame.origin, frame.exponent);
     const double sizes = 2 * body_.node_scale() + norm_inf(shift) + norm_inf(frame.origin);
-    blur_ = 0x1p-43 * sizes + 0x1p-900;
+    blur_ = 0x1p-43 * sizes + power_of_two(std::max(-900, -1068 - frame.exponent));
     skew_ = 4 * skew_of(pose.rotation) + 64 * kUnitRoundoff;
 }
 

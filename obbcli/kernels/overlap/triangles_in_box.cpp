@@ -29,8 +29,7 @@ namespace {
 } // namespace
 
 bool may_meet(const Obb& box, const Triangle& triangle, double pad) {
-    return !are_separated(grown(box, pad), triangle,
-                          bound_of(skew_of(box), 2 * kPlaceError));
+    return !are_separated(grown(box, pad), triangle, bound_of(skew_of(box), 2 * kPlaceError));
 }
 
 bool BoxSearch::find(const Obb& box, double pad, std::size_t most, std::vector<NodeRef>& found) {
