@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from obbcli.kernels._core import (
     AtRestAnswer,
+    ColumnVolume,
     Contact,
     ContactPlace,
     ContactQuery,
@@ -26,6 +27,7 @@ from obbcli.kernels._core import (
     Pose,
     QuickCall,
     Screw,
+    SelfOverlap,
     SolidProbe,
     Split,
     StaticQuery,
@@ -139,6 +141,7 @@ def asked_by_kernels_first(question: QuickQuestion) -> Callable[[_Function], _Fu
 
 __all__ = [
     "AtRestAnswer",
+    "ColumnVolume",
     "Contact",
     "ContactPlace",
     "ContactQuery",
@@ -154,6 +157,7 @@ __all__ = [
     "QuickCall",
     "QuickQuestion",
     "Screw",
+    "SelfOverlap",
     "SolidProbe",
     "Split",
     "StaticQuery",

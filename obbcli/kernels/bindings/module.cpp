@@ -36,4 +36,5 @@ NB_MODULE(_core, m) {
     bind_primitives(m);
     bind_distance(m);
     bind_swept_pairs(m);
+    bind_overlap_volume(m);
 }
