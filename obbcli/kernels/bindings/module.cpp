@@ -21,6 +21,7 @@ NB_MODULE(_core, m) {
     m.def("keeps_denormals", &keeps_denormals);
     bind_limits(m);
     bind_hull(m);
+    bind_thickness(m);
     bind_tree(m);
     bind_file_tree(m);
     bind_pose(m);

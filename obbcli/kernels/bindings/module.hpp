@@ -171,6 +171,7 @@ void bind_static_query(nb::module_& m);
 void bind_steady_pairs(nb::module_& m);
 void bind_swept_pairs(nb::module_& m);
 void bind_sweep(nb::module_& m);
+void bind_thickness(nb::module_& m);
 void bind_tree(nb::module_& m);
 
 // How Python's objects for `obb::Pose` and `Placed` are read: wherever functions are bound.

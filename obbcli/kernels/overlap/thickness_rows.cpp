@@ -1,0 +1,176 @@
+// The rows of a thickness query: where the bound is attained, what is near there says more.
+#include "overlap/thickness_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obb {
+
+namespace {
+
+// From the two shorter edges: of a needle the others cancel.
+[[nodiscard]] Vec3 unit_normal(const Triangle& t) {
+    const std::array<Vec3, 3> e{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+        longest = dot(e[k], e[k]) > dot(e[longest], e[longest]) ? k : longest;
+    }
+    return unit_or(
+        cross(unit_or(e[(longest + 1) % 3], {0, 0, 0}), unit_or(e[(longest + 2) % 3], {0, 0, 0})),
+        {0, 0, 0});
+}
+
+} // namespace
+
+// Takes over the hold on a row that the caller has.
+void ThicknessQuery::hold(std::uint32_t id) {
+    const BoundRow& row = rows_[id];
+    Held held{id, 0, {}, {}};
+    if (!row.is_escape) {
+        held.triangle = surfaces_[row.body].triangle(row.triangle);
+    }
+    held_.push_back(held);
+}
+
+void ThicknessQuery::add(const BoundRow& row) {
+    if (held_.size() >= kRows) {
+        drop_idle(kRows - 1);
+    }
+    hold(rows_.add(row));
+    held_.back().weight = 1; // not idle before it was tried
+    row.values(corners_, held_.back().triangle, held_.back().values);
+}
+
+// Where the bound is about attained.
+Vec3 ThicknessQuery::candidate() const {
+    if (held_.empty()) {
+        return box_.at(box_.middle());
+    }
+    Vec3 p{0, 0, 0};
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+        p = p + game_.corner_weights()[k] * corners_[k];
+    }
+    return p;
+}
+
+// Looks at the candidate and adds the rows that it suggests; false where none is new.
+bool ThicknessQuery::add_rows() {
+    constexpr double kHeavy = 0.1;
+    const Vec3 world = frame_.to_world(candidate());
+    const Vec3 point = frame_.to_frame(world);
+    ++points_;
+    std::array<PointDistance, 2> near;
+    std::vector<NodeRef>& hints = hints_;
+    for (std::size_t body = 0; body < 2; ++body) {
+        hints.clear();
+        for (const Held& held : held_) {
+            if (rows_[held.id].body == body) {
+                hints.push_back(rows_[held.id].triangle);
+            }
+        }
+        near[body] = probes_[body].nearest.find(point, slack_, hints);
+    }
+    try_point(world, near);
+    bool is_new = false;
+    for (std::size_t body = 0; body < 2; ++body) {
+        is_new = add_triangle(body, near[body]) || is_new;
+    }
+    for (std::size_t body = 0; body < 2; ++body) {
+        const Vec3 normal = unit_normal(surfaces_[body].triangle(near[body].triangle));
+        is_new = add_escape(body, normal, near[body].triangle) || is_new;
+    }
+    // Where one surface lies along the other, what bounds the one tells where to look for the
+    // other.
+    ways_.clear();
+    for (const Held& held : held_) {
+        if (held.weight >= kHeavy) {
+            ways_.push_back(rows_[held.id].normal);
+        }
+    }
+    for (const Vec3& way : ways_) {
+        for (std::size_t body = 0; body < 2; ++body) {
+            is_new = add_escape(body, way, near[body].triangle) || is_new;
+        }
+    }
+    return is_new;
+}
+
+void ThicknessQuery::try_point(const Vec3& world, const std::array<PointDistance, 2>& near) {
+    const double radius = std::min(near[0].low, near[1].low);
+    if (radius > best_.radius && probes_[0].windings.find(world).is_inside() &&
+        probes_[1].windings.find(world).is_inside()) {
+        best_ = {world, radius, surfaces_[0].id(near[0].triangle),
+                 surfaces_[1].id(near[1].triangle)};
+    }
+}
+
+bool ThicknessQuery::add_triangle(std::size_t body, const PointDistance& near) {
+    for (const Held& held : held_) {
+        const BoundRow& row = rows_[held.id];
+        if (!row.is_escape && row.body == body && row.triangle.begin == near.triangle.begin) {
+            return false;
+        }
+    }
+    BoundRow row;
+    row.triangle = near.triangle;
+    row.body = static_cast<std::uint8_t>(body);
+    row.normal = unit_normal(surfaces_[body].triangle(near.triangle));
+    add(row);
+    return near.high < bound_;
+}
+
+// An escape row along a direction, on whichever side is out.
+bool ThicknessQuery::add_escape(std::size_t body, const Vec3& normal, const NodeRef& triangle) {
+    constexpr double kSame = 1 - 0x1p-40;
+    if (normal == Vec3{0, 0, 0}) {
+        return false;
+    }
+    for (const Tried& tried : tried_) {
+        if (tried.body == body && std::fabs(dot(tried.normal, normal)) > kSame) {
+            return false;
+        }
+    }
+    tried_.push_back({body, normal});
+    SolidProbe& probe = probes_[body];
+    const double gap = 0.5 * (bound_ - target());
+    const double fine = std::max(std::min(tolerance_ * target(), gap), 0.5 * floor_);
+    // The row is that of the cell's core, which holds a point within sqrt(3) times `within` of each
+    // point of the cell: surfaces that are flush with the cell leave it be. Whoever is no deeper
+    // than that is of no interest; else the point of the core is in the solid as well, and both
+    // depth and height differ by that much at most.
+    const double within = 0.02 * fine;
+    const double lost = kDiagonal * (within + kCellPad);
+    const CellBox::Corners corners = box_.corners(-within);
+    const RowEffort effort{.thin = 0.1 * fine, .useful = bound_};
+    for (const double side : {probe.outward, -probe.outward}) {
+        const Vec3 up = side * normal;
+        const auto found = probe.escapes.find(corners, up, side_for(up), effort);
+        if (!found) {
+            continue;
+        }
+        probe.outward = side;
+        for (std::size_t k = 0; k < held_.size(); ++k) {
+            const BoundRow& row = rows_[held_[k].id];
+            if (row.is_escape && row.body == body && dot(row.normal, found->up) > kSame) {
+                if (row.height <= found->height + 2 * lost) {
+                    return false;
+                }
+                rows_.drop(held_[k].id);
+                held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(k));
+                break;
+            }
+        }
+        BoundRow row;
+        row.triangle = triangle;
+        row.body = static_cast<std::uint8_t>(body);
+        row.is_escape = true;
+        row.normal = found->up;
+        row.height = found->height + 2 * lost;
+        given_up_ = std::max(given_up_, lost);
+        add(row);
+        return true;
+    }
+    return false;
+}
+
+} // namespace obb
