@@ -393,6 +393,9 @@ class ColumnVolume:
     def bounds(self) -> tuple[float, float]: ...
 
     @property
+    def integral(self) -> tuple[float, float]: ...
+
+    @property
     def centroid(self) -> tuple[float, float, float] | None: ...
 
     @property

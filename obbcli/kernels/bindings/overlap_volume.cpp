@@ -42,6 +42,7 @@ void bind_column_volume(nb::module_& m) {
         .def("advance", &obb::ColumnVolume::advance, "max_pops"_a,
              nb::call_guard<nb::gil_scoped_release>())
         .def_prop_ro("bounds", [](const obb::ColumnVolume& q) { return pair(q.bounds()); })
+        .def_prop_ro("integral", [](const obb::ColumnVolume& q) { return pair(q.integral()); })
         .def_prop_ro("centroid",
                      [](const obb::ColumnVolume& q) -> std::optional<Triple> {
                          const auto found = q.centroid();

@@ -23,23 +23,24 @@ Bracket ColumnSum::bracket() const {
         return {-kInfinity, kInfinity};
     }
     const double value = values_.value();
-    const double error = errors_.value() + values_.cut_off() + errors_.cut_off() +
-                         8 * kUnitRoundoff * (std::fabs(value) + errors_.value());
-    return {value - error, value + error};
+    const double off =
+        error() + values_.cut_off() + 8 * kUnitRoundoff * (std::fabs(value) + error());
+    return {value - off, value + off};
 }
 
 ColumnSums::ColumnSums(const ColumnFrame& frame)
     : frame_(frame), volume_(size_of(frame.window)),
-      moments_{ColumnSum(size_of(frame.window) * (frame.window.high[0] - frame.window.low[0])),
-               ColumnSum(size_of(frame.window) * (frame.window.high[1] - frame.window.low[1])),
-               ColumnSum(size_of(frame.window) * frame.window.height)} {}
+      moments_{FixedSum(size_of(frame.window) * (frame.window.high[0] - frame.window.low[0])),
+               FixedSum(size_of(frame.window) * (frame.window.high[1] - frame.window.low[1])),
+               FixedSum(size_of(frame.window) * frame.window.height)} {}
 
-void ColumnSums::add(const ShadowTerm& term, int sign) {
-    const ColumnWindow& w = frame_.window;
-    volume_.add(term.volume, term.error, sign);
-    const std::array<double, 3> sizes{w.high[0] - w.low[0], w.high[1] - w.low[1], w.height};
+void ColumnSums::add(const ShadowTerm& term) {
+    if (term.error == 0) { // and so is the term
+        return;
+    }
+    volume_.add(term.volume, term.error, 1);
     for (std::size_t k = 0; k < 3; ++k) {
-        moments_[k].add(term.moments[k], 2 * term.error * sizes[k], sign);
+        moments_[k].add(term.moments[k]);
     }
 }
 
@@ -53,11 +54,13 @@ ColumnSums::Centroid ColumnSums::centroid() const {
     }
     Centroid found{frame_.origin, 0, true};
     const double value = volume_.value();
+    const ColumnWindow& w = frame_.window;
+    const std::array<double, 3> sizes{w.high[0] - w.low[0], w.high[1] - w.low[1], w.height};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Bracket moment = moments_[k].bracket();
         const double place = moments_[k].value() / value;
-        const double error =
-            (moment.high - moment.low) / 2 + std::fabs(place) * (volume.high - volume.low) / 2;
+        const double error = 2 * volume_.error() * sizes[k] + moments_[k].cut_off() +
+                             std::fabs(place) * (volume.high - volume.low);
+        found.is_known = found.is_known && moments_[k].is_whole();
         double& coordinate = found.point[(frame_.axis + 1 + k) % 3];
         coordinate += place;
         const double off =

@@ -27,17 +27,18 @@ class ColumnSum {
     // In the unit of the query to the third power. Everything where a term was no number.
     [[nodiscard]] Bracket bracket() const;
     [[nodiscard]] double value() const { return values_.value(); }
+    [[nodiscard]] double error() const { return errors_.value() + errors_.cut_off(); }
 
   private:
     FixedSum values_, errors_;
 };
 
-// The volume below a number of terms, and its first moments.
+// The volume that a number of terms add up to, and its first moments.
 class ColumnSums {
   public:
     explicit ColumnSums(const ColumnFrame& frame);
 
-    void add(const ShadowTerm& term, int sign);
+    void add(const ShadowTerm& term);
     [[nodiscard]] Bracket volume() const { return volume_.bracket(); }
 
     struct Centroid {
@@ -51,7 +52,7 @@ class ColumnSums {
   private:
     const ColumnFrame& frame_;
     ColumnSum volume_;
-    std::array<ColumnSum, 3> moments_; // u, v, w
+    std::array<FixedSum, 3> moments_; // u, v, w
 };
 
 // A bracket times 2^exponent, rounded outwards.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace obb {
 
@@ -15,7 +16,7 @@ ColumnVolume::ColumnVolume(const TreeView& a, const Pose& pose_a, const TreeView
 
 bool ColumnVolume::advance(std::uint64_t max_pops) {
     is_complete_ = pairs_.advance(max_pops, [&](const Shadow& a, const Shadow& b, bool) {
-        sums_.add(term_of(a, b, frame_.window), 1);
+        sums_.add(term_of(a, b, frame_.window));
     });
     return is_complete_;
 }
@@ -32,6 +33,15 @@ Bracket ColumnVolume::bounds() const {
     }
     found = scaled_outwards(found, 3 * exponent_);
     return {std::max(found.low, 0.0), found.high};
+}
+
+Bracket ColumnVolume::integral() const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (frame_.is_empty) {
+        return {0, 0};
+    }
+    return is_complete_ ? scaled_outwards(sums_.volume(), 3 * exponent_)
+                        : Bracket{-kInfinity, kInfinity};
 }
 
 std::optional<ColumnVolume::Centroid> ColumnVolume::centroid() const {

@@ -38,6 +38,8 @@ class ColumnVolume {
     // before the answer is complete: then, for solids that do not overlap themselves, by the space
     // that their extents have in common.
     [[nodiscard]] Bracket bounds() const;
+    // The integral itself, with its sign; everything before the answer is complete.
+    [[nodiscard]] Bracket integral() const;
     struct Centroid {
         Vec3 point;   // mesh units
         double error; // proven: the true one is at most so far away

@@ -14,15 +14,20 @@ namespace obb {
 class FixedSum {
   public:
     // Terms are expected to be about as large as `size` at most.
-    explicit FixedSum(double size) : exponent_(std::max(exponent_of(size), -900) - kDigits) {}
+    explicit FixedSum(double size)
+        : exponent_(std::clamp(exponent_of(size), -900, 900) - kDigits),
+          scale_(power_of_two(-exponent_)) {}
 
     void add(double term) {
-        const double units = std::ldexp(term, -exponent_);
+        const double units = scale_ * term;
         if (!(std::fabs(units) < 0x1p122)) { // NaN included
             is_whole_ = false;
             return;
         }
-        sum_ += static_cast<Int128>(units);
+        // In two steps, each exact: conversions to wide integers are slow calls.
+        const auto high = static_cast<std::int64_t>(units * 0x1p-60);
+        const auto low = static_cast<std::int64_t>(units - static_cast<double>(high) * 0x1p60);
+        sum_ += (Int128{high} << 60) + low;
         ++count_;
         is_whole_ = is_whole_ && sum_ < kLargest && sum_ > -kLargest;
     }
@@ -42,6 +47,7 @@ class FixedSum {
     static constexpr Int128 kLargest = Int128{1} << 125;
 
     int exponent_; // of what is counted
+    double scale_; // 2^-exponent
     Int128 sum_ = 0;
     std::uint64_t count_ = 0;
     bool is_whole_ = true;

@@ -41,6 +41,9 @@ SelfOverlap::SelfOverlap(const TreeView& tree, const Pose& pose,
 bool SelfOverlap::advance(std::uint64_t max_pops) {
     is_complete_ = pairs_.advance(max_pops, [&](const Shadow& a, const Shadow& b, bool is_same) {
         const ShadowTerm term = term_of(a, b, frame_.window);
+        if (term.error == 0) { // and so is the term
+            return;
+        }
         square_.add(term.volume, term.error, is_same ? 1 : 2);
         if (is_same) { // the column under one triangle, without its sign
             volume_.add(term.volume, term.error, a.sign);

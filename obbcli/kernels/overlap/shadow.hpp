@@ -33,6 +33,8 @@ struct Shadow {
     double extent; // width plus breadth of the shadow: no two of its points are further apart
     // The turn of the corners seen from above, which is exact. 0: upright, it has no shadow.
     int sign;
+    // Its edges, with the shadow to their left, each from one corner to the next; |u| + |v|.
+    std::array<double, 3> along_u, along_v, along_sum;
     double area;    // twice that of the shadow, with its sign, as computed
     double inverse; // 1 / area, or 0
     double reach;   // the largest |h|

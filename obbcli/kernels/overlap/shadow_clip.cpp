@@ -14,30 +14,37 @@ ShadowClip::ShadowClip(const Shadow& subject, const Shadow& other)
     }
 }
 
-ShadowClip::Edge ShadowClip::edge_of(const std::array<double, 3>& u, const std::array<double, 3>& v,
-                                     std::size_t k, int sign, double factor) const {
-    const std::size_t next = k == 2 ? 0 : k + 1;
-    const double along_u = sign * (u[next] - u[k]), along_v = sign * (v[next] - v[k]);
-    return {u[k], v[k], along_u, along_v,
-            factor * unit_ * (std::fabs(along_u) + std::fabs(along_v))};
+ShadowClip::Edge ShadowClip::edge_of(const Shadow& shadow, const std::array<double, 3>& u,
+                                     const std::array<double, 3>& v, std::size_t k) const {
+    return {u[k], v[k], shadow.along_u[k], shadow.along_v[k], unit_ * shadow.along_sum[k]};
 }
 
 // 4.01 u D for the value and 2 u D for how far the corners of both moved; 8 is more than enough.
-bool ShadowClip::are_apart() const {
-    const auto parts = [&](const auto& u, const auto& v, int sign, const auto& their_u,
-                           const auto& their_v) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Edge e = edge_of(u, v, k, sign, 8);
-            if (side(e, their_u[0], their_v[0]) < -e.doubt &&
-                side(e, their_u[1], their_v[1]) < -e.doubt &&
-                side(e, their_u[2], their_v[2]) < -e.doubt) {
-                return true;
-            }
+// Corners that the triangles share lie on the edges that end there.
+bool ShadowClip::is_beyond_edge(const Shadow& shadow, const std::array<double, 3>& u,
+                                const std::array<double, 3>& v, const Shadow& theirs,
+                                const std::array<double, 3>& their_u,
+                                const std::array<double, 3>& their_v) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = k == 2 ? 0 : k + 1;
+        const Edge e = edge_of(shadow, u, v, k);
+        bool is_beyond = true;
+        for (std::size_t i = 0; i < 3 && is_beyond; ++i) {
+            const auto is_end = [&](std::size_t end) {
+                return shadow.u[end] == theirs.u[i] && shadow.v[end] == theirs.v[i];
+            };
+            is_beyond = side(e, their_u[i], their_v[i]) < -8 * e.doubt || is_end(k) || is_end(next);
         }
-        return false;
-    };
-    return parts(other_u, other_v, other_.sign, subject_u, subject_v) ||
-           parts(subject_u, subject_v, subject_.sign, other_u, other_v);
+        if (is_beyond) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool ShadowClip::are_apart() const {
+    return is_beyond_edge(other_, other_u, other_v, subject_, subject_u, subject_v) ||
+           is_beyond_edge(subject_, subject_u, subject_v, other_, other_u, other_v);
 }
 
 void ShadowClip::cut(const ColumnWindow& window) {
@@ -47,11 +54,11 @@ void ShadowClip::cut(const ColumnWindow& window) {
     kept_.slack = 12;
     std::array<double, ClippedShadow::kMost> sides{};
     for (std::size_t k = 0; k < 3 && kept_.count > 0; ++k) {
-        const Edge e = edge_of(other_u, other_v, k, other_.sign, 5);
+        const Edge e = edge_of(other_, other_u, other_v, k);
         for (std::size_t i = 0; i < kept_.count; ++i) {
             sides[i] = side(e, kept_.u[i], kept_.v[i]);
         }
-        cut_along(sides, e.doubt);
+        cut_along(sides, 6 * e.doubt);
     }
     // A side of the window matters only where both triangles go beyond it.
     const auto lower = [](double a, double b) { return a < b ? b : a; };

@@ -53,7 +53,7 @@ class ShadowClip {
     // shadows whose rectangles meet.
     ShadowClip(const Shadow& subject, const Shadow& other);
 
-    // Whether the shadows are proven to have no point in common: a line along an edge parts them.
+    // Whether the shadows are proven to share no area: a line along an edge parts them.
     [[nodiscard]] bool are_apart() const;
     // Cuts; not where they are apart.
     void cut(const ColumnWindow& window);
@@ -68,10 +68,14 @@ class ShadowClip {
   private:
     struct Edge {
         double from_u, from_v, along_u, along_v;
-        double doubt; // what its values may be off by
+        double doubt; // of which multiples bound what its values may be off by: u D of its length
     };
-    [[nodiscard]] Edge edge_of(const std::array<double, 3>& u, const std::array<double, 3>& v,
-                               std::size_t k, int sign, double factor) const;
+    [[nodiscard]] Edge edge_of(const Shadow& shadow, const std::array<double, 3>& u,
+                               const std::array<double, 3>& v, std::size_t k) const;
+    [[nodiscard]] bool is_beyond_edge(const Shadow& shadow, const std::array<double, 3>& u,
+                                      const std::array<double, 3>& v, const Shadow& theirs,
+                                      const std::array<double, 3>& their_u,
+                                      const std::array<double, 3>& their_v) const;
     // Twice the area of the triangle over an edge: positive inside.
     [[nodiscard]] static double side(const Edge& e, double u, double v) {
         return e.along_u * (v - e.from_v) - e.along_v * (u - e.from_u);

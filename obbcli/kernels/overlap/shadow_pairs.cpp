@@ -2,13 +2,16 @@
 
 #include "shapes/extremes.hpp"
 
+#include <algorithm>
+
 namespace obb {
 
 ShadowGroups::ShadowGroups(const ColumnBody& body, const ColumnFrame& frame)
-    : body_(body), frame_(frame), groups_(kSlots) {}
+    : body_(body), frame_(frame),
+      groups_(std::min<std::size_t>(kSlots, 1 + body.tree().triangle_count() / 4)) {}
 
 std::span<const Shadow> ShadowGroups::of(const NodeRef& ref) {
-    Group& group = groups_[ref.begin % kSlots];
+    Group& group = groups_[ref.begin % groups_.size()];
     if (group.begin != ref.begin || group.end != ref.end) {
         group.end = group.begin; // in case that what follows throws
         body_.tree().prepare_triangles(ref, ref.triangle_count());

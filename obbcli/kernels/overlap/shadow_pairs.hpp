@@ -26,7 +26,7 @@ class ShadowGroups {
     [[nodiscard]] std::span<const Shadow> of(const NodeRef& ref);
 
   private:
-    static constexpr std::size_t kSlots = 256; // a power of two
+    static constexpr std::size_t kSlots = 256; // at most
 
     struct Group {
         std::uint32_t begin = 0, end = 0;
