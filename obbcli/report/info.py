@@ -21,7 +21,18 @@ _CHANGES = {
 }
 
 
-def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bool) -> Record:
+# Meshes of up to so many triangles are looked at unasked: it takes a tenth of a second.
+_FEW = 20_000
+
+
+def info_record(
+    path: str,
+    shape: Mesh | ObbTree,
+    sha256: str,
+    *,
+    is_checked: bool,
+    looks_for_overlap: bool = False,
+) -> Record:
     """Return the record of a file.
 
     Args:
@@ -29,6 +40,7 @@ def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bo
         shape: what it holds.
         sha256: of its bytes, in hexadecimal.
         is_checked: whether its tree was proven.
+        looks_for_overlap: whether to tell of a large mesh, too, if it overlaps itself.
 
     Raises:
         TreeFileError: the tree contradicts itself.
@@ -38,6 +50,7 @@ def info_record(path: str, shape: Mesh | ObbTree, sha256: str, *, is_checked: bo
     mesh = shape if isinstance(shape, Mesh) else shape.mesh
     source = Source.of(path, sha256, mesh)
     result: Record = {"kind": "mesh" if is_mesh else "tree", **_mesh_part(mesh)}
+    result["self_overlap"] = _self_overlap_part(shape, mesh, is_asked=looks_for_overlap)
     result["tree"] = None if isinstance(shape, Mesh) else _tree_part(path, shape)
     result["check"] = "passed" if is_checked else None
     return document("info", {"file": source.part()}, result=result)
@@ -55,6 +68,21 @@ def _mesh_part(mesh: Mesh) -> Record:
         "duplicate_count": mesh.duplicate_count,
         "accuracy": _accuracy_part(mesh),
     }
+
+
+def _self_overlap_part(shape: Mesh | ObbTree, mesh: Mesh, *, is_asked: bool) -> Record:
+    """Return whether a mesh overlaps itself, or why that is not told."""
+    from obbcli.questions.self_overlap import self_overlap
+
+    part: Record = dict.fromkeys(("overlaps_itself", "volume", "excess", "reason"))
+    if not mesh.is_watertight:
+        return part | {"reason": "the surface does not close"}
+    if len(mesh.triangles) > _FEW and not is_asked:
+        return part | {"reason": "not looked at in a mesh this large without --overlaps-itself"}
+    found = self_overlap(shape)
+    bounds = {name: [finite(x) for x in getattr(found, name)] for name in ("volume", "excess")}
+    reason = "rounding leaves it open" if found.overlaps_itself is None else None
+    return part | {"overlaps_itself": found.overlaps_itself, **bounds, "reason": reason}
 
 
 def _accuracy_part(mesh: Mesh) -> Record:
@@ -120,11 +148,30 @@ def _mesh_rows(file: Record, result: Record) -> list[tuple[str, str]]:
         ("unit", file.get("unit", "not stated")),
         ("centroid", point(result["surface_centroid"])),
         ("watertight", "yes" if result["is_watertight"] else "no"),
+        *_solid_rows(result["self_overlap"]),
         ("degenerate", f"{count(result['degenerate_count'])} triangles"),
         ("duplicate", f"{count(result['duplicate_count'])} triangles"),
         *[("note", text) for text in file["notes"]],
         *warnings,
     ]
+
+
+def _solid_rows(part: Record) -> list[tuple[str, str]]:
+    """Return the rows about the solid that a mesh is: its volume, whether it overlaps itself."""
+    verdict = part["overlaps_itself"]
+    if part["volume"] is None:
+        return [("overlap", f"with itself unknown: {part['reason']}")]
+    low, high = part["volume"]
+    if None in (low, high):
+        return [("overlap", "with itself unknown: its volume exceeds the largest double")]
+    rows = [("volume", f"{length((low + high) / 2)} (cubic mesh units)")]
+    if verdict is None:
+        return [*rows, ("overlap", f"with itself unknown: {part['reason']}")]
+    if not verdict:
+        return [*rows, ("overlap", "none with itself")]
+    share = part["excess"][1] / 2 / max(abs(low), abs(high))
+    text = f"WITH ITSELF: up to {share:.2g} of its volume is wound about other than once"
+    return [*rows, ("overlap", text)]
 
 
 def _tree_rows(tree: Record) -> list[tuple[str, str]]:

@@ -7,7 +7,8 @@ import json
 import math
 
 import pytest
-from mesh_files.cube_files import CUBE_FACES, as_input, cube, obj
+from mesh_files.cube_files import CUBE_FACES, as_input, cube, obj, objects
+from meshes.surfaces import geodesic
 
 
 def test_info_of_a_mesh(here, obbtree):
@@ -24,6 +25,12 @@ def test_info_of_a_mesh(here, obbtree):
         "size": math.sqrt(3),
         "surface_centroid": [0.5, 0.5, 0.5],
         "is_watertight": True,
+        "self_overlap": {
+            "overlaps_itself": False,
+            "volume": [pytest.approx(1.0, abs=1e-12)] * 2,
+            "excess": [0, pytest.approx(0.0, abs=1e-11)],
+            "reason": None,
+        },
         "degenerate_count": 0,
         "duplicate_count": 0,
         "accuracy": {
@@ -175,3 +182,59 @@ def test_info_never_replaces_what_it_reads(here, obbtree):
 
     assert ended.code == 2
     assert (here / "cube.stl").read_bytes() == before
+
+
+def test_info_tells_the_volume_and_that_nothing_overlaps(here, obbtree):
+    part = obbtree("info", "cube.stl", "--json").json["result"]["self_overlap"]
+
+    assert part["overlaps_itself"] is False
+    assert part["reason"] is None
+    assert part["volume"][0] <= 1 <= part["volume"][1] <= 1 + 1e-12
+    assert 0 == part["excess"][0] <= part["excess"][1] < 1e-11
+    assert "none with itself" in obbtree("info", "cube.stl").out
+
+
+def test_info_tells_that_a_mesh_overlaps_itself(here, obbtree):
+    # Two unit cubes that share half of each: the volume counts that half twice.
+    (here / "doubled.obj").write_text(objects(left=0.0, right=0.5))
+
+    part = obbtree("info", "doubled.obj", "--json").json["result"]["self_overlap"]
+
+    assert part["overlaps_itself"] is True
+    assert part["volume"][0] <= 2 <= part["volume"][1]
+    assert part["excess"][0] <= 1 <= part["excess"][1] <= 1 + 1e-9
+    assert "WITH ITSELF: up to 0.25 of its volume" in obbtree("info", "doubled.obj").out
+
+
+def test_info_of_an_open_mesh_has_no_volume(here, obbtree):
+    lines = (here / "apart.obj").read_text().splitlines()
+    (here / "open.obj").write_text("\n".join(lines[:-1]) + "\n")
+
+    part = obbtree("info", "open.obj", "--json").json["result"]["self_overlap"]
+
+    nothing = dict.fromkeys(("overlaps_itself", "volume", "excess"))
+    assert part == nothing | {"reason": "the surface does not close"}
+
+
+def test_info_looks_at_a_large_mesh_only_where_asked(here, obbtree):
+    vertices, faces = geodesic(20_480)
+    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    rows += [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in faces.tolist()]
+    (here / "ball.obj").write_text("\n".join(rows) + "\n")
+
+    left, asked = (
+        obbtree("info", "ball.obj", "--json", *words).json["result"]["self_overlap"]
+        for words in ((), ("--overlaps-itself",))
+    )
+
+    assert left["volume"] is left["overlaps_itself"] is None
+    assert "--overlaps-itself" in left["reason"]
+    assert asked["overlaps_itself"] is False
+    assert 4.18 < asked["volume"][0] <= asked["volume"][1] < 4 / 3 * math.pi
+
+
+def test_info_of_parts_says_nothing_of_overlap(here, obbtree):
+    ended = obbtree("info", "cube.stl", "--parts", "--overlaps-itself")
+
+    assert ended.code == 2
+    assert "--overlaps-itself" in ended.err

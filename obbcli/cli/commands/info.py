@@ -42,6 +42,12 @@ Examples:
 )
 @click.argument("file", metavar="FILE", type=PathName())
 @option("Question", "--check", is_flag=True, help="Prove every box and checksum of the tree.")
+@option(
+    "Question",
+    "--overlaps-itself",
+    is_flag=True,
+    help="Tell of a mesh of more than 20,000 triangles, too, whether it overlaps itself.",
+)
 @option("Question", "--parts", is_flag=True, help="List the parts of a mesh file, placed.")
 @unit_option
 @scale_option("--scale", "the mesh's")
@@ -52,9 +58,9 @@ Examples:
 def command(file: str, common: CommonOptions, **flags: Any) -> int:
     """Show what FILE holds: a mesh, or a tree with the mesh inside it.
 
-    Counts, size, whether the surface closes, degenerate and repeated triangles; of a tree also its
-    levels, how it was built, and whether the mesh file beside it has changed since. --check over a
-    mesh builds its tree and proves that.
+    Counts, size, whether the surface closes and overlaps itself, its volume, degenerate and
+    repeated triangles; of a tree also its levels, how it was built, and whether the mesh file
+    beside it has changed since. --check over a mesh builds its tree and proves that.
     """
     from obbcli.files import file_of, stamp_of
     from obbcli.mesh import Mesh
@@ -67,6 +73,9 @@ def command(file: str, common: CommonOptions, **flags: Any) -> int:
     lengths = UnitOptions(flags["unit"], flags["scale"], None, flags["weld"], sag).of_a()
     check = flags["check"]
     if flags["parts"]:
+        if flags["overlaps_itself"]:
+            fault = "asks about one mesh, and --parts lists the parts as they are"
+            raise UsageError("--overlaps-itself", fault, "leave out one of the two")
         for name in ("unit", "scale", "weld"):
             if flags[name] is not None:
                 fault = "changes one mesh, and --parts lists the parts as they are"
@@ -79,7 +88,8 @@ def command(file: str, common: CommonOptions, **flags: Any) -> int:
     if check:
         (ObbTree.build(shape) if isinstance(shape, Mesh) else shape).check()
     sha256 = sha256 or file_sha256(file_of(file), stamp)
-    record = info_record(file, shape, sha256, is_checked=check)
+    asked = flags["overlaps_itself"]
+    record = info_record(file, shape, sha256, is_checked=check, looks_for_overlap=asked)
     record["stats"] = {"seconds": {"total": time.perf_counter() - start}}
     emit(record, info_tables, common)
     return 0

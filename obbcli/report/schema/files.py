@@ -17,6 +17,7 @@ from obbcli.report.schema.words import (
     AMOUNT,
     COUNT,
     FLAG,
+    NUMBER,
     SHA256,
     TEXT,
     VECTOR,
@@ -72,6 +73,7 @@ def info() -> Schema:
         "size": told(or_null(AMOUNT), "diagonal, mesh units; null beyond the largest double"),
         "surface_centroid": told(VECTOR, "weighted by area; the default pivot"),
         "is_watertight": told(FLAG, "whether every edge has two triangles that agree on it"),
+        "self_overlap": _self_overlap(),
         "degenerate_count": told(COUNT, "triangles without area"),
         "duplicate_count": told(COUNT, "triangles that are there already"),
         "accuracy": _grain(),
@@ -79,8 +81,33 @@ def info() -> Schema:
         "check": told(or_null(word_of(("passed",))), "null where --check was not asked for"),
     }
     inputs = record({"file": ref("source")})
-    either: Schema = {"oneOf": [record(result), parts]}
+    either: Schema = {"oneOf": [record(result, optional=("self_overlap",)), parts]}
     return document("info", inputs, result=either, stats=record({"seconds": SECONDS}))
+
+
+def _self_overlap() -> Schema:
+    bracket = or_null(list_of(or_null(NUMBER), 2))
+    volume = "[lo, hi], proven, cubic mesh units; negative of a surface turned inward; "
+    return told(
+        record(
+            {
+                "overlaps_itself": told(
+                    or_null(FLAG),
+                    "whether the surface winds about any space other than once, by proof; false: "
+                    "about less than 1e-9 of its volume; null: see reason",
+                ),
+                "volume": told(bracket, volume + "null where it was not looked at"),
+                "excess": told(
+                    bracket,
+                    "[lo, hi], proven, cubic mesh units: the integral of w^2 - w, w being how "
+                    "often the surface winds about a place; twice the space wound about other than "
+                    "once, or more",
+                ),
+                "reason": told(or_null(TEXT), "why it is not told; null where it is"),
+            }
+        ),
+        "What the mesh is as a solid. Null beside a null: beyond the largest double.",
+    )
 
 
 def _grain() -> Schema:
