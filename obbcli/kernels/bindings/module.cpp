@@ -34,6 +34,7 @@ NB_MODULE(_core, m) {
     bind_sweep(m);
     bind_containment(m);
     bind_solid_probe(m);
+    bind_protrusion(m);
     bind_primitives(m);
     bind_distance(m);
     bind_swept_pairs(m);

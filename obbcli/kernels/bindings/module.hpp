@@ -165,6 +165,7 @@ void bind_overlap_volume(nb::module_& m);
 void bind_placed(nb::module_& m);
 void bind_pose(nb::module_& m);
 void bind_primitives(nb::module_& m);
+void bind_protrusion(nb::module_& m);
 void bind_quick_call(nb::module_& m);
 void bind_solid_probe(nb::module_& m);
 void bind_static_query(nb::module_& m);

@@ -29,58 +29,105 @@ constexpr double kRowError = 64 * kUnitRoundoff;
 
 } // namespace
 
+bool EscapeSearch::set_shadow(std::span<const Vec3> corners, const Vec3& direction,
+                              const Vec3& side) {
+    const Vec3 up = unit_or(direction, {0, 0, 0});
+    if (up == Vec3{0, 0, 0} || !is_finite(up) || corners.empty()) {
+        return false;
+    }
+    prism_ = {up, across_of(up, side), {HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+    bottom_ = HUGE_VAL;
+    top_ = -HUGE_VAL;
+    for (const Vec3& p : corners) {
+        const double height = dot(up, p);
+        bottom_ = smaller(bottom_, height);
+        top_ = larger(top_, height);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double place = dot(prism_.across[i], p);
+            prism_.low[i] = smaller(prism_.low[i], place);
+            prism_.high[i] = larger(prism_.high[i], place);
+        }
+    }
+    return true;
+}
+
 // Let the gap be from c to c1 over the rectangle, c1 above the cell, and a point of it outside:
 // then all of it is. From a point p of the cell in the solid, which is not in the gap, and
 // therefore not above c, the way along `up` stays over the rectangle until it comes into the gap,
 // and meets the surface before.
-std::optional<EscapeRow> EscapeSearch::find(std::span<const Vec3> corners, const Vec3& direction,
+std::optional<EscapeRow> EscapeSearch::find(std::span<const Vec3> corners, const Vec3& up,
                                             const Vec3& side, const RowEffort& effort) {
-    const Vec3 up = unit_or(direction, {0, 0, 0});
-    if (up == Vec3{0, 0, 0} || !is_finite(up) || corners.empty()) {
+    if (!set_shadow(corners, up, side)) {
         return std::nullopt;
     }
-    Prism prism{up, across_of(up, side), {HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
-    double bottom = HUGE_VAL, top = -HUGE_VAL;
-    for (const Vec3& p : corners) {
-        const double height = dot(up, p);
-        bottom = smaller(bottom, height);
-        top = larger(top, height);
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double place = dot(prism.across[i], p);
-            prism.low[i] = smaller(prism.low[i], place);
-            prism.high[i] = larger(prism.high[i], place);
-        }
-    }
-    const double ceiling = top + effort.useful + kRowError;
     for (const HeightGap& gap :
-         heights_.find(prism, bottom - kRowError, ceiling, effort.thin, effort.most)) {
-        if (gap.to >= top + kRowError && gap.to - gap.from > 4 * kRowError &&
-            is_outside(prism, gap)) {
-            return EscapeRow{up, gap.from + kRowError};
+         heights_.find(prism_, bottom_ - kRowError, top_ + effort.useful + kRowError, effort.thin,
+                       effort.most)) {
+        if (gap.to < top_ + kRowError) {
+            continue;
+        }
+        if (const auto winding = winding_in(gap); winding && winding->is_outside()) {
+            return EscapeRow{prism_.up, gap.from + kRowError};
         }
     }
     return std::nullopt;
 }
 
-// Whether a point of the world in the midst of the gap is outside: its place in the frame, rounded,
-// is seen to be in the gap.
-bool EscapeSearch::is_outside(const Prism& prism, const HeightGap& gap) {
-    const double height = 0.5 * gap.from + 0.5 * gap.to;
-    Vec3 place = height * prism.up;
+// Between two gaps in which the surface winds another number of times around points, every upright
+// line over the rectangle meets it.
+std::optional<CrossingRow> EscapeSearch::find_crossing(std::span<const Vec3> corners,
+                                                       const Vec3& up, const Vec3& side,
+                                                       const RowEffort& effort) {
+    if (!set_shadow(corners, up, side)) {
+        return std::nullopt;
+    }
+    constexpr std::size_t kMostGaps = 6;
+    const double far = effort.useful + kRowError;
+    std::optional<CrossingRow> best;
+    std::optional<std::int64_t> before;
+    double before_to = 0, least = effort.useful;
+    std::size_t count = 0;
+    for (const HeightGap& gap :
+         heights_.find(prism_, bottom_ - far, top_ + far, effort.thin, effort.most)) {
+        if (++count > kMostGaps) {
+            break;
+        }
+        const auto winding = winding_in(gap);
+        if (!winding || winding->is_on_surface) {
+            continue;
+        }
+        const double reach = larger(gap.from - bottom_, top_ - before_to) + kRowError;
+        if (before && *before != winding->number && reach < least) {
+            least = reach;
+            best = CrossingRow{prism_.up, before_to - kRowError, gap.from + kRowError};
+        }
+        before = winding->number;
+        before_to = gap.to;
+    }
+    return best;
+}
+
+// Of a point of the world in the midst of the gap: its place in the frame, rounded, is seen to be
+// in the gap, else there is no answer.
+std::optional<Winding> EscapeSearch::winding_in(const HeightGap& gap) {
+    if (!(gap.to - gap.from > 4 * kRowError)) {
+        return std::nullopt;
+    }
+    Vec3 place = (0.5 * gap.from + 0.5 * gap.to) * prism_.up;
     for (std::size_t i = 0; i < 2; ++i) {
-        place = place + (0.5 * (prism.low[i] + prism.high[i])) * prism.across[i];
+        place = place + (0.5 * (prism_.low[i] + prism_.high[i])) * prism_.across[i];
     }
     const OverlapFrame& frame = windings_.frame();
     const Vec3 world = frame.to_world(place);
     const Vec3 back = frame.to_frame(world);
-    const double its = dot(prism.up, back);
-    bool is_within = its > gap.from + kRowError && its < gap.to - kRowError;
+    const double height = dot(prism_.up, back);
+    bool is_within = height > gap.from + kRowError && height < gap.to - kRowError;
     for (std::size_t i = 0; i < 2; ++i) {
-        const double across = dot(prism.across[i], back);
-        is_within = is_within && across >= prism.low[i] - 8 * kUnitRoundoff &&
-                    across <= prism.high[i] + 8 * kUnitRoundoff;
+        const double across = dot(prism_.across[i], back);
+        is_within = is_within && across >= prism_.low[i] - 8 * kUnitRoundoff &&
+                    across <= prism_.high[i] + 8 * kUnitRoundoff;
     }
-    return is_within && windings_.find(world).is_outside();
+    return is_within ? std::optional{windings_.find(world)} : std::nullopt;
 }
 
 } // namespace obb

@@ -4,6 +4,7 @@
 
 #include "overlap/height_gaps.hpp"
 #include "overlap/winding_number.hpp"
+#include "shapes/extremes.hpp"
 
 #include <optional>
 #include <span>
@@ -18,6 +19,18 @@ struct EscapeRow {
     double height;
 
     [[nodiscard]] double reach(const Vec3& p) const { return height - dot(up, p); }
+};
+
+// Whoever goes straight along `up` from any point of the cell, or back, meets the surface between
+// these heights: on whichever side of it the point is, it is no further away than reach().
+struct CrossingRow {
+    Vec3 up;
+    double low, high;
+
+    [[nodiscard]] double reach(const Vec3& p) const {
+        const double height = dot(up, p);
+        return larger(high - height, height - low);
+    }
 };
 
 // What a row may cost.
@@ -38,10 +51,20 @@ class EscapeSearch {
     [[nodiscard]] std::optional<EscapeRow> find(std::span<const Vec3> corners, const Vec3& up,
                                                 const Vec3& side, const RowEffort& effort);
 
+    // The same for points on either side of the surface. `useful` counts from the cell both ways.
+    [[nodiscard]] std::optional<CrossingRow> find_crossing(std::span<const Vec3> corners,
+                                                           const Vec3& up, const Vec3& side,
+                                                           const RowEffort& effort);
+
     [[nodiscard]] std::uint64_t rays() const { return windings_.rays(); }
 
   private:
-    [[nodiscard]] bool is_outside(const Prism& prism, const HeightGap& gap);
+    [[nodiscard]] bool set_shadow(std::span<const Vec3> corners, const Vec3& up, const Vec3& side);
+    [[nodiscard]] std::optional<Winding> winding_in(const HeightGap& gap);
+
+    // Of the present cell: its shadow and its range of heights.
+    Prism prism_;
+    double bottom_ = 0, top_ = 0;
 
     HeightSearch heights_;
     WindingSearch windings_;

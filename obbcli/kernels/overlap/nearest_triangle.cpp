@@ -33,15 +33,30 @@ constexpr std::uint32_t kTogether = 4;
 
 PointDistance NearestSearch::find(const Vec3& point, double slack, std::span<const NodeRef> hints,
                                   double enough) {
+    begin(point, slack);
+    for (const NodeRef& hint : hints) {
+        measure_range(hint.begin, hint.end, hint.slot);
+    }
+    descend(surface_->tree().root(), enough);
+    return best_;
+}
+
+PointDistance NearestSearch::find_under(const NodeRef& node, const Vec3& point, double slack) {
+    begin(point, slack);
+    descend(node, 0);
+    return best_;
+}
+
+void NearestSearch::begin(const Vec3& point, double slack) {
     point_ = point;
     slack_ = slack;
     limit_ = low_ = HUGE_VAL;
     best_ = {};
-    for (const NodeRef& hint : hints) {
-        measure_range(hint.begin, hint.end, hint.slot);
-    }
+}
+
+void NearestSearch::descend(const NodeRef& from, double enough) {
     stack_.clear();
-    push(surface_->tree().root());
+    push(from);
     while (!stack_.empty() && !(best_.high < enough)) {
         const Open open = stack_.back();
         stack_.pop_back();
@@ -52,7 +67,6 @@ PointDistance NearestSearch::find(const Vec3& point, double slack, std::span<con
         }
     }
     best_.low = stack_.empty() ? smaller(low_, best_.high) : 0;
-    return best_;
 }
 
 void NearestSearch::open_up(const NodeRef& ref) {

@@ -30,6 +30,8 @@ class NearestSearch {
     // earlier searches of this surface.
     [[nodiscard]] PointDistance find(const Vec3& point, double slack,
                                      std::span<const NodeRef> hints, double enough = 0);
+    // The same of the part of the surface under a node.
+    [[nodiscard]] PointDistance find_under(const NodeRef& node, const Vec3& point, double slack);
 
     [[nodiscard]] std::uint64_t triangle_tests() const { return triangle_tests_; }
 
@@ -38,6 +40,8 @@ class NearestSearch {
         NodeRef ref;
         double low;
     };
+    void begin(const Vec3& point, double slack);
+    void descend(const NodeRef& from, double enough);
     void open_up(const NodeRef& ref);
     void measure_range(std::uint32_t begin, std::uint32_t end, std::uint32_t slot);
     void push(const NodeRef& ref);
