@@ -18,6 +18,7 @@ struct BoundRow {
     NodeRef triangle{};   // whose distance it is; of an escape row, where its direction comes from
     Vec3 normal{0, 0, 0}; // of the triangle, of length 1; of an escape row, the way up
     double height = 0;    // of an escape row
+    Vec3 slope{0, 0, 0};  // of an escape row: of what is highest over the cell, across the way up
     std::uint8_t body = 0;
     bool is_escape = false;
 

@@ -87,6 +87,21 @@ class NormalSum {
 
     [[nodiscard]] const Moments& moments() const { return moments_; }
 
+    // Axes along which as much of the surface as can be lies flat: one normal, and another one made
+    // perpendicular to it.
+    [[nodiscard]] std::array<Vec3, 3> peaks() const {
+        std::array<Vec3, 3> axes = CellBox{}.axes;
+        axes[0] = best([](const Vec3& n) { return n; }, axes[0]);
+        const auto upright = [&](const Vec3& n) { return n - dot(n, axes[0]) * axes[0]; };
+        const Vec3 a = abs(axes[0]);
+        const Vec3 any = a.x <= a.y && a.x <= a.z ? Vec3{1, 0, 0}
+                         : a.y <= a.z             ? Vec3{0, 1, 0}
+                                                  : Vec3{0, 0, 1};
+        axes[1] = best(upright, unit_or(upright(any), any));
+        axes[2] = cross(axes[0], axes[1]);
+        return axes;
+    }
+
   private:
     [[nodiscard]] bool is_near(const SolidSurface& surface, const NodeRef& ref) const {
         constexpr double kPad = 0x1p-30; // no proof depends on it
@@ -102,6 +117,32 @@ class NormalSum {
         return norm(d) <= reach + size;
     }
 
+    // Of some of the normals, changed, the direction that most of the surface has about for normal.
+    template <typename Change>
+    [[nodiscard]] Vec3 best(const Change& change, const Vec3& otherwise) const {
+        constexpr std::size_t kTried = 48;
+        const std::size_t step = normals_.size() / kTried + 1;
+        Vec3 found = otherwise;
+        double most = 0;
+        for (std::size_t i = 0; i < normals_.size(); i += step) {
+            const Vec3 changed = change(normals_[i].unit);
+            if (!(norm(changed) > 0.5)) {
+                continue;
+            }
+            const Vec3 tried = unit_or(changed, otherwise);
+            double sum = 0;
+            for (std::size_t k = 0; k < normals_.size(); k += step) {
+                const double c = dot(tried, normals_[k].unit), c2 = c * c, c4 = c2 * c2;
+                sum += normals_[k].weight * c4 * c4 * c4;
+            }
+            if (sum > most) {
+                most = sum;
+                found = tried;
+            }
+        }
+        return found;
+    }
+
     void take(const Triangle& t, double count) {
         const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
         const double length = norm(n);
@@ -111,6 +152,7 @@ class NormalSum {
         const Vec3 unit = (1 / length) * n;
         const double weight = length * count;
         moments_.weight += weight;
+        normals_.push_back({unit, weight});
         std::size_t k = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = i; j < 3; ++j) {
@@ -119,8 +161,14 @@ class NormalSum {
         }
     }
 
+    struct Normal {
+        Vec3 unit;
+        double weight;
+    };
+
     Obb box_;
     Moments moments_{};
+    std::vector<Normal> normals_;
 };
 
 } // namespace
@@ -136,11 +184,13 @@ std::optional<CellBox> common_box(const SolidSurface& a, const SolidSurface& b) 
     if (!(sum.moments().weight > 0)) {
         return upright;
     }
-    const std::array<Vec3, 3> axes = principal_axes(sum.moments());
-    if (!is_finite(axes[0]) || !is_finite(axes[1]) || !is_finite(axes[2])) {
-        return upright;
+    constexpr double kPreferred = 1.25; // times as large will do
+    const std::optional<CellBox> by_peaks = box_in(sum.peaks(), a, b);
+    const std::optional<CellBox> by_moments = box_in(principal_axes(sum.moments()), a, b);
+    if (!by_peaks || !by_moments) {
+        return std::nullopt;
     }
-    return box_in(axes, a, b);
+    return by_peaks->volume() <= kPreferred * by_moments->volume() ? by_peaks : by_moments;
 }
 
 } // namespace obb

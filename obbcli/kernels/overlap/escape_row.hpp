@@ -45,6 +45,9 @@ class EscapeSearch {
     // The surface must outlive it.
     explicit EscapeSearch(const SolidSurface& surface) : heights_(surface), windings_(surface) {}
 
+    // A triangle that the row found last is as high as, or lower by no more than it is rounded.
+    [[nodiscard]] NodeRef under(const EscapeRow& row) const { return heights_.under(row.height); }
+
     // The best row along a direction for the convex cell of these corners, none for a direction of
     // no length. A row for a cell holds for every cell within it. Shadows are tightest where `side`
     // is an edge of the cell that is not along `up`; any vector will do.

@@ -74,6 +74,12 @@ HeightSearch::Span HeightSearch::span_of(const Triangle& t, const Prism& prism) 
     return whole;
 }
 
+double HeightSearch::flatness_of(const Triangle& t, const Vec3& up) {
+    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    const double length = norm(normal);
+    return length > 0 ? std::fabs(dot(normal, up)) / length : 0;
+}
+
 // The same of what a box holds. A NaN is everywhere.
 HeightSearch::Span HeightSearch::span_of(const Obb& box, const Prism& prism) const {
     const auto radius = [&](const Vec3& along) {
@@ -103,6 +109,12 @@ void HeightSearch::take(Span span) {
     auto last = first;
     for (; last != taken_.end() && last->low <= span.high; ++last) {
         span.low = smaller(span.low, last->low);
+        // Where an edge is highest, the flatter triangle tells more.
+        if (last->high > span.high + kUp ||
+            (last->high >= span.high - kUp && last->flatness > span.flatness)) {
+            span.top = last->top;
+            span.flatness = last->flatness;
+        }
         span.high = larger(span.high, last->high);
     }
     if (first == last) {
@@ -128,11 +140,12 @@ std::span<const HeightGap> HeightSearch::find(const Prism& prism, double floor, 
     const TreeView& tree = surface_->tree();
     taken_.clear();
     gaps_.clear();
-    take({-HUGE_VAL, floor});
-    take({ceiling, HUGE_VAL});
+    take({-HUGE_VAL, floor, {0, 1, 0, 0}, 0});
+    take({ceiling, HUGE_VAL, {0, 1, 0, 0}, 0});
     const auto look_at = [&](const NodeRef& ref) {
-        if (const Span span = span_of(surface_->triangle(ref), prism); !is_settled(span)) {
-            take(span);
+        const Triangle t = surface_->triangle(ref);
+        if (const Span span = span_of(t, prism); !is_settled(span)) {
+            take({span.low, span.high, ref, flatness_of(t, prism.up)});
         }
     };
     stack_.assign(1, tree.root());
@@ -149,7 +162,8 @@ std::span<const HeightGap> HeightSearch::find(const Prism& prism, double floor, 
             continue;
         }
         if (span.high - span.low <= thin || count >= most) {
-            take(span);
+            tree.prepare_triangles(ref, 1);
+            take({span.low, span.high, {ref.begin, ref.begin + 1, ref.slot, ref.depth}, 1});
             continue;
         }
         tree.prepare(ref);
@@ -163,9 +177,17 @@ std::span<const HeightGap> HeightSearch::find(const Prism& prism, double floor, 
         }
     }
     for (std::size_t k = 0; k + 1 < taken_.size(); ++k) {
-        gaps_.push_back({taken_[k].high, taken_[k + 1].low});
+        gaps_.push_back({taken_[k].high, taken_[k + 1].low, taken_[k].top});
     }
     return gaps_;
+}
+
+NodeRef HeightSearch::under(double height) const {
+    NodeRef found{0, 1, 0, 0};
+    for (const HeightGap& gap : gaps_) {
+        found = gap.from <= height ? gap.under : found;
+    }
+    return found;
 }
 
 } // namespace obb

@@ -22,6 +22,7 @@ struct Prism {
 // posed vertices, over the rectangle grown by 16 u, with everything that rounds on the safe side.
 struct HeightGap {
     double from, to;
+    NodeRef under; // a triangle that is highest below, or one of a box that is
 };
 
 class HeightSearch {
@@ -34,12 +35,17 @@ class HeightSearch {
     // so is what is left after `most` of them: gaps are then fewer or narrower, never wrong.
     [[nodiscard]] std::span<const HeightGap> find(const Prism& prism, double floor, double ceiling,
                                                   double thin, std::size_t most);
+    // Of the gaps found last, the highest that begins at a height or below.
+    [[nodiscard]] NodeRef under(double height) const;
 
   private:
     struct Span {
         double low, high;
+        NodeRef top{0, 1, 0, 0};
+        double flatness = 0; // of that triangle: how much of its normal is upright
     };
     [[nodiscard]] static Span span_of(const Triangle& t, const Prism& prism);
+    [[nodiscard]] static double flatness_of(const Triangle& t, const Vec3& up);
     [[nodiscard]] Span span_of(const Obb& box, const Prism& prism) const;
     [[nodiscard]] bool is_settled(const Span& span) const;
     void take(Span span);

@@ -92,14 +92,15 @@ ThicknessQuery::Shrunk ThicknessQuery::shrink() {
     return Shrunk::kSmaller;
 }
 
-// Puts the cell into the frame of its heaviest escape row where it is a thin slice along that.
+// Puts the cell into the frame of its heaviest row where what is left of the cell is a thin slice
+// along that, or, once in a line of cells, where no progress is made: surfaces that stand askew to
+// the cell shade each other.
 void ThicknessQuery::turn() {
-    constexpr double kAligned = 0.9995, kThinner = 0.6;
+    constexpr double kAligned = 0.9995, kLight = 0x1p-6, kThinner = 0.6, kWorth = 3;
     const Held* first = nullptr;
     for (const Held& held : held_) {
-        const BoundRow& row = rows_[held.id];
-        const Vec3 along = abs(box_.local(row.normal));
-        if (row.is_escape && held.weight > 0x1p-6 && norm_inf(along) < kAligned &&
+        const Vec3 along = abs(box_.local(rows_[held.id].normal));
+        if (held.weight > kLight && norm_inf(along) < kAligned &&
             (first == nullptr || held.weight > first->weight)) {
             first = &held;
         }
@@ -109,10 +110,10 @@ void ThicknessQuery::turn() {
     }
     const Vec3 up = rows_[first->id].normal;
     Vec3 side = side_for(up);
-    double weight = 0x1p-6;
+    double weight = kLight;
     for (const Held& held : held_) {
         const BoundRow& row = rows_[held.id];
-        if (row.is_escape && held.weight > weight && std::fabs(dot(row.normal, up)) < 0.9) {
+        if (held.weight > weight && std::fabs(dot(row.normal, up)) < 0.9) {
             weight = held.weight;
             side = row.normal;
         }
@@ -120,18 +121,20 @@ void ThicknessQuery::turn() {
     const Vec3 second = unit_or(side - dot(side, up) * up, {0, 0, 0});
     const std::array<Vec3, 3> axes{up, second, cross(up, second)};
     const double least = target();
+    const double most = !is_fitted_ && stalls_ > 0 ? kWorth : kThinner;
     const std::optional<CellBox> turned = cut_box(axes, false);
-    if (turned && turned->volume() < kThinner * box_.volume()) {
+    if (turned && turned->volume() < most * box_.volume()) {
         given_up_ = std::max(given_up_, std::min(bound_, least));
         box_ = *turned;
         box_frame_ = static_cast<std::uint32_t>(frames_.size());
         frames_.push_back(axes);
+        is_fitted_ = true;
         place_corners();
     }
 }
 
 // How much the rows in use, by their weights, lose along each axis of the cell: a triangle row by
-// its second difference, an escape row by how far the normals of triangles nearby lean over.
+// its second difference, an escape row by the slope of the triangle that is highest.
 Vec3 ThicknessQuery::bends() const {
     Vec3 sum{0, 0, 0};
     const Vec3 middle = box_.middle(), half = 0.5 * box_.width();
@@ -141,7 +144,10 @@ Vec3 ThicknessQuery::bends() const {
             continue;
         }
         if (row.is_escape) {
-            sum = sum + held.weight * lean(row, half);
+            const Vec3 slope = box_.local(row.slope);
+            for (std::size_t j = 0; j < 3; ++j) {
+                sum[j] += held.weight * half[j] * std::fabs(slope[j]);
+            }
             continue;
         }
         std::array<Vec3, 7> points;
@@ -160,21 +166,16 @@ Vec3 ThicknessQuery::bends() const {
     return sum;
 }
 
-Vec3 ThicknessQuery::lean(const BoundRow& row, const Vec3& half) const {
-    constexpr double kSteep = 0.2;
-    Vec3 result{0, 0, 0};
+// How far the cell reaches along each axis, counted by how much the rows in use see of it: along a
+// pin nothing changes.
+Vec3 ThicknessQuery::rises() const {
+    constexpr double kUnseen = 0.05;
+    Vec3 sum{kUnseen, kUnseen, kUnseen};
     for (const Held& held : held_) {
-        const BoundRow& other = rows_[held.id];
-        const double rise = dot(other.normal, row.normal);
-        if (other.is_escape || other.body != row.body || std::fabs(rise) < kSteep) {
-            continue;
-        }
-        const Vec3 slope = box_.local((1 / rise) * other.normal - row.normal);
-        for (std::size_t j = 0; j < 3; ++j) {
-            result[j] = std::max(result[j], 0.5 * half[j] * std::fabs(slope[j]));
-        }
+        sum = sum + held.weight * abs(box_.local(rows_[held.id].normal));
     }
-    return result;
+    const Vec3 width = box_.width();
+    return {width.x * sum.x, width.y * sum.y, width.z * sum.z};
 }
 
 } // namespace obb

@@ -37,7 +37,7 @@ ThicknessQuery::ThicknessQuery(const TreeView& a, const Pose& pose_a, const Tree
         // A ball in both solids fits between the planes of the box.
         const Vec3 width = box->width();
         const double bound = 0.5 * std::min({width.x, width.y, width.z}) + kCellPad;
-        queue_.push({box->low, box->high, bound, 0, 0, 0, {}}, -bound, order_++);
+        queue_.push({box->low, box->high, bound, 0, 0, 0, false, 0, {}}, -bound, order_++);
     }
 }
 
@@ -109,10 +109,12 @@ void ThicknessQuery::visit(const Cell& cell) {
 
 void ThicknessQuery::look_at(const Cell& cell) {
     constexpr int kRounds = 5;
+    constexpr double kProgress = 0.98;
     box_ = {frames_[cell.frame], cell.low, cell.high};
     box_frame_ = cell.frame;
     bound_ = cell.bound;
     inside_ = cell.inside;
+    is_fitted_ = cell.is_fitted;
     tried_.clear();
     place_corners();
     if (is_given_up() || is_outside()) {
@@ -130,6 +132,8 @@ void ThicknessQuery::look_at(const Cell& cell) {
             }
         }
     }
+    const bool is_stalled = bound_ > kProgress * cell.bound;
+    stalls_ = static_cast<std::uint8_t>(is_stalled && cell.stalls <= 4 ? cell.stalls + 1 : 0);
     turn();
     split();
 }
@@ -198,23 +202,26 @@ bool ThicknessQuery::is_outside() {
 
 // Halves the cell; each half keeps the rows that weigh most.
 void ThicknessQuery::split() {
-    const Vec3 width = box_.width(), bend = bends();
-    std::size_t axis = 0, longest = 0;
+    constexpr double kTelling = 0.3; // of the gap to be closed; bends below that explain little
+    constexpr std::uint8_t kPatience = 4;
+    const Vec3 width = box_.width();
+    Vec3 bend = bends();
+    if (stalls_ >= kPatience) {
+        bend = width;
+    } else if (!(norm_inf(bend) > kTelling * (bound_ - target()))) {
+        bend = rises();
+    }
+    std::size_t axis = 0;
     for (std::size_t j = 1; j < 3; ++j) {
         axis = bend[j] > bend[axis] ? j : axis;
-        longest = width[j] > width[longest] ? j : longest;
-    }
-    constexpr double kTelling = 0.3; // of the gap to be closed; bends below that explain little
-    if (!(bend[axis] > kTelling * (bound_ - target()))) {
-        axis = longest;
     }
     const double middle = 0.5 * (box_.low[axis] + box_.high[axis]);
-    if (!(middle > box_.low[axis] && middle < box_.high[axis] && width[longest] > 4 * kCellPad)) {
+    if (!(middle > box_.low[axis] && middle < box_.high[axis] && width[axis] > 4 * kCellPad)) {
         given_up_ = std::max(given_up_, bound_); // points this close are one
         return;
     }
     drop_idle(kInherited);
-    Cell half{box_.low, box_.high, bound_, box_frame_, inside_, 0, {}};
+    Cell half{box_.low, box_.high, bound_, box_frame_, inside_, 0, is_fitted_, stalls_, {}};
     for (const Held& row : held_) {
         half.rows[half.row_count++] = row.id;
     }

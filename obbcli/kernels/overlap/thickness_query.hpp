@@ -90,6 +90,8 @@ class ThicknessQuery {
         std::uint32_t frame;
         std::uint8_t inside; // a bit for each solid that holds all of the cell
         std::uint8_t row_count;
+        bool is_fitted;      // its frame is that of a row
+        std::uint8_t stalls; // so many halvings before this one left the bound about as it was
         std::array<std::uint32_t, kInherited> rows;
     };
     // A row at work in the present cell.
@@ -127,7 +129,7 @@ class ThicknessQuery {
     [[nodiscard]] Shrunk shrink();
     void turn();
     [[nodiscard]] Vec3 bends() const;
-    [[nodiscard]] Vec3 lean(const BoundRow& row, const Vec3& half) const;
+    [[nodiscard]] Vec3 rises() const;
 
     OverlapFrame frame_;
     std::array<SolidSurface, 2> surfaces_;
@@ -152,7 +154,8 @@ class ThicknessQuery {
     CellBox::Corners corners_{};
     double bound_ = 0;
     std::uint32_t box_frame_ = 0;
-    std::uint8_t inside_ = 0;
+    std::uint8_t inside_ = 0, stalls_ = 0;
+    bool is_fitted_ = false;
     std::vector<Held> held_;
     std::vector<Tried> tried_;
     std::vector<NodeRef> hints_;

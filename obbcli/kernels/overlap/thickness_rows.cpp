@@ -20,6 +20,14 @@ namespace {
         {0, 0, 0});
 }
 
+// How a plane rises across a direction, in which it may stand on end.
+[[nodiscard]] Vec3 slope_of(const Vec3& normal, const Vec3& up) {
+    constexpr double kSteepest = 8;
+    const double rise = dot(normal, up);
+    const Vec3 across = rise * up - normal;
+    return (1 / std::max(std::fabs(rise), norm(across) / kSteepest + 0x1p-100)) * across;
+}
+
 } // namespace
 
 // Takes over the hold on a row that the caller has.
@@ -166,6 +174,8 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& normal, const Node
         row.is_escape = true;
         row.normal = found->up;
         row.height = found->height + 2 * lost;
+        row.slope =
+            slope_of(unit_normal(surfaces_[body].triangle(probe.escapes.under(*found))), found->up);
         given_up_ = std::max(given_up_, lost);
         add(row);
         return true;
