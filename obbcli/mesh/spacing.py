@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 # Decimal digits that are looked for in a text: fewer are lengths that somebody chose, more are
 # as good as those of a double.
 _FEWEST, _MOST = 5, 12
+#: No spacing that is told is a larger share of the largest coordinate.
+COARSEST = 10.0 ** (1 - _FEWEST)
 # So many different coordinates use all digits of a text that was rounded to them.
 _WITNESSES = 8
 # Relative: the decimal number, two powers of ten and two products are each rounded by 2^-53.
@@ -62,7 +64,7 @@ def _decimal_spacing(values: NDArray[np.float64]) -> float | None:
     values = values[values > 0]  # of which there are some: zeros alone are numbers of float32
     if not (values[0] > 1e-290 and values[-1] < 1e290):
         return None
-    left = values
+    left = values[~_have(values, _FEWEST - 1)]
     exponent = np.floor(np.log10(values[-1]))
     for digits in range(_FEWEST, _MOST + 1):
         before, left = left, left[~_have(left, digits)]

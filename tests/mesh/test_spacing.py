@@ -62,6 +62,13 @@ def test_few_lengths_that_somebody_chose_are_no_rounded_text() -> None:
     assert spacing_of(*fan(points))[1] == "float64"
 
 
+def test_many_lengths_of_few_digits_are_no_rounded_text() -> None:
+    """A designed part: lengths to a tenth, many of them, that somebody chose."""
+    points = np.array([[float(f"{100 + k / 10:.1f}"), k / 5, 16.1] for k in range(60)])
+
+    assert spacing_of(*fan(points))[1] == "float64"
+
+
 @pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20, 1e300])
 def test_extreme_coordinates_are_told_without_a_warning(scale: float) -> None:
     points = circle(scale)
