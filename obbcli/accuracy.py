@@ -22,6 +22,9 @@ DEFAULT_DURATION = 1.0
 TIME_TOLERANCE = 1e-9
 """Of the duration: the width asked of a bracket where the caller asks for none."""
 
+DEPTH_TOLERANCE = 1e-2
+"""The relative width asked of a depth's bracket where the caller asks for none."""
+
 
 class Aspect(NamedTuple):
     """What a field of `Accuracy` is, beside its name and default.

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from obbcli.answers.contact import Vector  # noqa: TC001  # kinds of fields are read
-from obbcli.answers.counts import QueryStats  # noqa: TC001
+from obbcli.answers.counts import Counts
 from obbcli.answers.status import Inner  # noqa: TC001
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 RelationWord: TypeAlias = Literal[
     "clear",
@@ -68,7 +71,8 @@ class Depth:
     """How deep, as a proven bracket.
 
     Attributes:
-        bounds: mesh units; (lo, hi), both proven. (0, 0) where nothing overlaps, by proof.
+        bounds: mesh units; (lo, hi), both proven. (0, 0) where nothing overlaps, by proof. hi is
+            None where a solid overlaps itself: surfaces within it hide how deep it is.
         point: where lo is attained, world coordinates: the centre of a ball inside both (of a
             thickness), or a point of the one surface inside the other solid. None where lo is 0.
         triangle_a: row of A's mesh file that is nearest to the point, or that holds it. None
@@ -76,10 +80,64 @@ class Depth:
         triangle_b: the same of B.
     """
 
-    bounds: Bounds
+    bounds: tuple[float, float | None]
     point: Vector | None = None
     triangle_a: int | None = None
     triangle_b: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Volume:
+    """How much space two solids share.
+
+    Attributes:
+        bounds: cubed mesh units; (lo, hi), both proven. Of solids that are not proven to overlap
+            themselves it is taken that they do not.
+        centroid: the mean place of that space, world coordinates; None where it has no volume.
+    """
+
+    bounds: Bounds
+    centroid: Vector | None = None
+
+
+class OverlapStats(NamedTuple):
+    """What a question about an overlap cost.
+
+    Attributes:
+        box_tests: pairs of boxes tested.
+        triangle_tests: pairs of triangles tested.
+        exact_triangle_tests: those of them that exact arithmetic had to decide.
+        pops: pairs taken from the queue or stack.
+        image_tests: pairs of images tested.
+        nodes_built_a: nodes of A's tree that exist after the question; a lazy tree builds only what
+            is asked for.
+        nodes_built_b: the same for B.
+        nodes_possible_a: nodes that A's tree can have.
+        nodes_possible_b: the same for B.
+        cells: pieces of space, and of surfaces, whose depth was bounded.
+        points: points whose depth was measured.
+        rays: that told what is inside.
+        seconds: s of wall time by stage.
+    """
+
+    box_tests: int
+    triangle_tests: int
+    exact_triangle_tests: int
+    pops: int
+    image_tests: int
+    nodes_built_a: int
+    nodes_built_b: int
+    nodes_possible_a: int
+    nodes_possible_b: int
+    cells: int
+    points: int
+    rays: int
+    seconds: Mapping[str, float]
+
+    @property
+    def counts(self) -> Counts:
+        """Return what searches on the trees counted."""
+        return Counts(*self[:5])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,11 +177,13 @@ class Overlap:
         protrusion_a: how deep A's surface reaches into B: the distance from B's surface of A's
             deepest point inside B.
         protrusion_b: how deep B's surface reaches into A.
+        volume: how much space both solids share.
         deeper: whether the thickness or a protrusion exceeds `deeper_than`; None where that was
             not asked, or is not known.
         by: which of them was found to exceed it first.
         separation_along: how far A has to go in the direction asked about.
-        reason: why there are no depths: which surface does not close, and where.
+        reason: why there are no depths, or no upper ends of them: which surface does not close,
+            and where, or which solid overlaps itself.
         complete: whether the search ended before a limit. Where not, brackets are wide.
         stats: what the question cost.
     """
@@ -135,12 +195,13 @@ class Overlap:
     thickness: Depth | None = None
     protrusion_a: Depth | None = None
     protrusion_b: Depth | None = None
+    volume: Volume | None = None
     deeper: bool | None = None
     by: DepthWord | None = None
     separation_along: SeparationAlong | None = None
     reason: str | None = None
     complete: bool = True
-    stats: QueryStats
+    stats: OverlapStats
 
     @property
     def overlaps(self) -> bool:

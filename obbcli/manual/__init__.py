@@ -14,6 +14,7 @@ TOPICS = (
     "commands",
     "options",
     "scenes",
+    "overlap",
     "sweeps",
     "pictures",
     "python",

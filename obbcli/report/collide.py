@@ -74,6 +74,10 @@ def collide_tables(record: Record) -> list[Table]:
         meets = "is within the clearance of" if record["accuracy"]["clearance"] else "meets"
         rows.append(("witness", f"triangle {of_a} of A {meets} triangle {of_b} of B"))
     rows += part_rows(result)
+    if "relation" in result:
+        from obbcli.report.overlap import depth_rows
+
+        rows += [("relation", result["relation"]), *depth_rows(result)]
     tables = [Table([*rows, *cost_rows(record["stats"])])]
     if "pairs" in result:
         tables.append(_pairs_table(result))

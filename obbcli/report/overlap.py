@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from obbcli.report.record import answer_document
 from obbcli.report.rows import cost_rows, source_rows
-from obbcli.report.table import Table, length, point
+from obbcli.report.table import Table, count, length, point
 
 if TYPE_CHECKING:
     from obbcli.answers.overlap import Overlap
@@ -52,6 +52,12 @@ def overlap_part(answer: Overlap) -> Record:
     return part
 
 
+def relation_part(answer: Overlap) -> Record:
+    """Return what `obbtree collide --relation` adds to its answer."""
+    part = overlap_part(answer)
+    return {name: part[name] for name in ("relation", *_DEPTHS)}
+
+
 def plain(value: object) -> Any:
     """Return a value of an answer as documents hold it: classes as objects, tuples as lists."""
     if is_dataclass(value) and not isinstance(value, type):
@@ -69,6 +75,7 @@ def overlap_tables(record: Record) -> list[Table]:
         *_deeper_rows(record),
         *distance_rows(result),
         *depth_rows(result),
+        *_volume_rows(result),
         *_along_rows(result),
         ("band", _band(result["band"])),
     ]
@@ -76,7 +83,7 @@ def overlap_tables(record: Record) -> list[Table]:
         rows.append(("no depths", result["reason"]))
     if not result["complete"]:
         rows.append(("limit", "a limit was reached: brackets are wider than asked for"))
-    return [Table([*rows, *cost_rows(record["stats"])])]
+    return [Table([*rows, *_cost_rows(record["stats"])])]
 
 
 def overlap_bare(record: Record) -> str:
@@ -112,12 +119,31 @@ def depth_rows(result: Record) -> list[tuple[str, str]]:
     return rows
 
 
-def bracket(bounds: list[float]) -> str:
+def bracket(bounds: list[float | None]) -> str:
     """Return a bracket, six digits of each end."""
     low, high = bounds
+    if high is None:
+        return f"at least {length(low)}, proven"
     if low == high:
         return f"{length(low)}, proven"
     return f"{length(low)} to {length(high)}, proven"
+
+
+def _cost_rows(stats: Record) -> list[tuple[str, str]]:
+    """Return the rows that say what a question cost."""
+    rows = cost_rows(stats)
+    if not stats["cells"]:
+        return rows
+    told = f"{count(stats['cells'])} ({count(stats['points'])} points, {count(stats['rays'])} rays)"
+    return [*rows[:-2], ("cells", told), *rows[-2:]]
+
+
+def _volume_rows(result: Record) -> list[tuple[str, str]]:
+    shared = result["volume"]
+    if shared is None:
+        return []
+    place = "" if shared["centroid"] is None else f", about {point(shared['centroid'])}"
+    return [("volume", f"{bracket(shared['bounds'])}{place}")]
 
 
 def _deeper_rows(record: Record) -> list[tuple[str, str]]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from obbcli.answers.contact import Contact
     from obbcli.answers.counts import QueryStats
     from obbcli.answers.distance import Distance
+    from obbcli.answers.overlap import OverlapStats
     from obbcli.mesh import Mesh, PartRows
     from obbcli.motion.body import Body
     from obbcli.tree.head import TreeHead
@@ -98,7 +99,9 @@ def _head(name: str) -> Record:
     return {"schema": f"obbtree/{name}/{SCHEMA_VERSION}", "tool_version": __version__}
 
 
-def answer_document(command: str, setting: Setting, result: Record, stats: QueryStats) -> Record:
+def answer_document(
+    command: str, setting: Setting, result: Record, stats: QueryStats | OverlapStats
+) -> Record:
     """Return the record of an answer about two bodies."""
     a, b = setting.sources
     return document(
@@ -162,7 +165,7 @@ def body_part(body: Body) -> Record:
     return motion.told(pose, pivot_of(body, body.shape))
 
 
-def stats_part(stats: QueryStats) -> Record:
+def stats_part(stats: QueryStats | OverlapStats) -> Record:
     """Return what a question cost."""
     part = stats._asdict()
     part["seconds"] = seconds_part(stats.seconds)

@@ -83,7 +83,7 @@ def scene_record(
         "scene",
         {"scene": source.part(), "meshes": [mesh.part() for mesh in meshes]},
         duration=asked.duration,
-        bodies=_bodies_part(asked, places, with_motion=with_motion),
+        bodies=bodies_part(asked, places, with_motion=with_motion),
         ignore=[dict(entry) for entry in ignore],
         accuracy=asked.accuracy.as_dict(),
         # What is not asked for is no key, so that documents without it are as they were.
@@ -100,7 +100,8 @@ def mesh_paths(asked: ScenePairs) -> list[str]:
     return list(dict.fromkeys(paths))
 
 
-def _bodies_part(asked: ScenePairs, places: dict[str, int], *, with_motion: bool) -> list[Record]:
+def bodies_part(asked: ScenePairs, places: dict[str, int], *, with_motion: bool) -> list[Record]:
+    """Return what is said of the bodies, with the place of each one's file."""
     return [
         {
             "name": body.name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.accuracy import Accuracy
+from obbcli.accuracy import DEPTH_TOLERANCE, Accuracy
 from obbcli.errors import SceneError
 from obbcli.files import file_of
 from obbcli.mesh import known_suffixes
@@ -20,10 +20,11 @@ from obbcli.threads import thread_count
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from obbcli.scene.all_contacts import AllContacts
     from obbcli.scene.bodies import Bodies, Ignore, SceneBody
+    from obbcli.scene.overlaps import Overlaps
 
 
 class Scene:
@@ -183,6 +184,37 @@ class Scene:
             raise SceneError("solid", fault, "ask for first_contacts, or with solid=False")
         most = None if limit is None else whole_limit(limit)
         return AllContacts(ScenePairs(self._parts, self._shapes, pairs), most)
+
+    def overlaps(
+        self,
+        pairs: Iterable[tuple[str, str]] | None = None,
+        *,
+        tolerance: float = DEPTH_TOLERANCE,
+        touch: Sequence[float] | None = None,
+    ) -> Overlaps:
+        """Return how the bodies lie to each other at t = 0: all pairs that are not clear, in order.
+
+        Each is what `overlap` answers, with the scene's `clearance`, `max_iterations` and, for all
+        pairs together, `timeout`; but the depths of bodies that touch are no closer than that they
+        touch. Closed meshes are solids, others surfaces.
+
+        Args:
+            pairs: as of `first_contacts`.
+            tolerance: as of `overlap`.
+            touch: likewise.
+
+        Returns:
+            an iterator of `SceneOverlap` that also has `stats`.
+
+        Raises:
+            MotionError: `tolerance` or `touch` is refused.
+            SceneError, MeshError, TreeFileError, OSError: as `first_contacts`.
+        """
+        from obbcli.questions.overlap.asked import Asked
+        from obbcli.scene.overlaps import Overlaps
+
+        asked = Asked.of(tolerance, touch=touch)._replace(values="deep")
+        return Overlaps(self._parts, self._shapes, pairs, asked)
 
     def __repr__(self) -> str:
         return f"Scene({len(self.bodies)} bodies, {self.duration!r} s)"

@@ -51,6 +51,7 @@ Examples:
   obbtree collide gear.stl shaft.obj --translate-b 0 0 12.5
   obbtree collide part.stl clamp.obbt --all-pairs --limit 20
   obbtree collide robot.stl shelf.stl --vel 0 0 -50 --duration 3
+  obbtree collide lid.stl box.stl --solid --relation
   obbtree collide a.stl b.stl --exit-code --quiet || echo "they touch"
 """,
 )
@@ -70,6 +71,12 @@ Examples:
     help="Refuse a list of pairs that needs more, such as 500M or 2G [default: no limit].",
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
+@option(
+    QUESTION,
+    "--relation",
+    is_flag=True,
+    help="With --solid, at rest: say whether they touch or overlap, and how deep.",
+)
 @about_two("Exit with 1 where they touch, 0 where proven apart, 4 where only sampled so.")
 def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """Do A and B touch, at rest or at any time of a motion? Touching counts; the answer is exact.
@@ -102,6 +109,8 @@ def _refuse_contradictions(
         if flags[name] is not None and not flags["all_pairs"]:
             option_name = "--" + name.replace("_", "-")
             raise UsageError(option_name, "is about the list of --all-pairs", "add --all-pairs")
+    if flags["relation"]:
+        _refuse_beside_relation(question, accuracy, is_solid=flags["solid"])
     if not flags["all_pairs"]:
         return
     if question.moves:
@@ -119,6 +128,23 @@ def _refuse_contradictions(
         raise UsageError("--all-pairs", fault, "leave out the accuracy options")
 
 
+def _refuse_beside_relation(
+    question: QuestionOptions, accuracy: AccuracyOptions, *, is_solid: bool
+) -> None:
+    """Refuse what says nothing about how two solids at rest lie to each other."""
+    from obbcli.questions.overlap.asked import CONCERNS
+
+    if not is_solid:
+        raise UsageError("--relation", "is asked of solids", "add --solid")
+    if question.moves:
+        remedy = "leave the motion out, or add --duration 0"
+        raise UsageError("--relation", "is asked of bodies at rest, at t = 0", remedy)
+    for name in accuracy.given():
+        if name not in CONCERNS:
+            fault = "says nothing about a relation"
+            raise UsageError("--" + name.replace("_", "-"), fault, "leave out it or --relation")
+
+
 def _ask(
     asked: TwoBodyOptions,
     question: QuestionOptions,
@@ -134,6 +160,12 @@ def _ask(
     if flags["all_pairs"] and not _streams(asked.common, flags):
         pairs = _pairs(pair.bodies, flags["limit"], flags["max_memory"])
     record = collide_record(asked.setting(files, pair, flags["solid"]), answer, pairs)
+    if flags["relation"]:
+        from obbcli.questions.overlap.asked import Asked
+        from obbcli.questions.overlap.overlap import overlap_of
+        from obbcli.report.overlap import relation_part
+
+        record["result"] |= relation_part(overlap_of(pair, Asked(has_volume=False)))
     return with_load_time(record, files)
 
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from obbcli.cli.boundary import ExitCode, UsageError
+from obbcli.accuracy import DEPTH_TOLERANCE
+from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
 from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import Command, common_options, option, verify_option
@@ -15,20 +16,18 @@ from obbcli.cli.options.two_bodies import QUESTION
 from obbcli.cli.options.words import Finite, PathName, Whole
 from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import proving
-from obbcli.cli.scene_files import read_scene
+from obbcli.cli.scene_files import decoded, mesh_sources, read_scene
 from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
     from obbcli.cli.options.option import CommonOptions
     from obbcli.cli.scene_files import Stamps
-    from obbcli.mesh import Mesh
     from obbcli.report.record import Record, Source
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene
     from obbcli.scene.contact_stream import ContactStream
+    from obbcli.scene.overlaps import Overlaps
     from obbcli.scene.results import SceneContact
-    from obbcli.tree.head import TreeHead
-    from obbcli.tree.tree import ObbTree
 
 
 class _Wanted(NamedTuple):
@@ -40,6 +39,9 @@ class _Wanted(NamedTuple):
     limit: int | None
     solid: bool
     threads: int | None
+    overlaps: bool
+    tolerance: float | None
+    touch: tuple[float, float] | None
 
 
 @click.command(
@@ -51,6 +53,7 @@ Examples:
   obbtree scene cell.toml
   obbtree scene cell.toml --first --json
   obbtree scene robot.glb                   which of its parts touch?
+  obbtree scene robot.glb --overlaps        which overlap, and how deep?
   obbtree scene cell.toml --pairs gripper,part --pairs gripper,table --all-contacts
   obbtree scene cell.toml --exit-code --quiet && echo "nothing touches"
 """,
@@ -80,12 +83,36 @@ Examples:
     metavar="N",
     help="Ask about N pairs at a time [default: one a core]; nothing else depends on it.",
 )
+@option(
+    QUESTION,
+    "--overlaps",
+    is_flag=True,
+    help="Ask which bodies touch or overlap at t = 0, as solids, and how deep.",
+)
+@option(
+    QUESTION,
+    "--tolerance",
+    type=Finite(0.0),
+    metavar="E",
+    help="With --overlaps: relative width of brackets, in mesh units no less than 1e-9 sizes "
+    f"[default: {DEPTH_TOLERANCE:g}].",
+)
+@option(
+    QUESTION,
+    "--touch",
+    nargs=2,
+    type=Finite(0.0),
+    metavar="GAP OVERLAP",
+    help="With --overlaps: what still counts as touching, in mesh units "
+    "[default: the files' own rounding].",
+)
 @option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
 @option(
     QUESTION,
     "--exit-code",
     is_flag=True,
-    help="Exit with 1 where bodies touch, 0 where proven apart, 4 where only sampled so.",
+    help="Exit with 1 where bodies touch (with --overlaps: overlap), 0 where proven apart, 4 where "
+    "only sampled so.",
 )
 @option(
     "Motion",
@@ -112,6 +139,15 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     )
     _refuse_of_scene(wanted, scene)
     keep_inputs(common.output, (file, *stamps))
+    if wanted.overlaps:
+        from obbcli.cli.scene_overlaps import answer_overlaps
+
+        given = {"tolerance": wanted.tolerance, "touch": wanted.touch}
+        asked = {name: value for name, value in given.items() if value is not None}
+        overlaps = _overlaps(scene, wanted, asked)
+        return answer_overlaps(
+            overlaps, scene, source, stamps, common, exit_code=flags["exit_code"]
+        )
     found = _ask(scene, wanted)
     answer = _run(found, wanted, progress=common.shows_progress)
     # Hashes cost time, and only a document shows them.
@@ -131,9 +167,23 @@ def _refuse_contradictions(wanted: _Wanted) -> None:
         other = "--first" if wanted.first else "--all-contacts"
         fault = f"one question is asked at a time with {other}"
         raise UsageError("--threads", fault, "leave out one of the two")
+    _refuse_beside_overlaps(wanted)
     if wanted.solid and wanted.all_contacts:
         fault = "lists triangles that meet, and a body inside another has none"
         raise UsageError("--all-contacts", fault, "leave out it or --solid")
+
+
+def _refuse_beside_overlaps(wanted: _Wanted) -> None:
+    """Refuse flags about contacts beside --overlaps, and those about depths without it."""
+    if not wanted.overlaps:
+        for name in ("tolerance", "touch"):
+            if getattr(wanted, name) is not None:
+                raise UsageError(f"--{name}", "is about depths", "add --overlaps")
+        return
+    for name in ("first", "all_contacts", "limit", "solid", "threads"):
+        if getattr(wanted, name):
+            fault = "says nothing about overlaps at t = 0"
+            raise UsageError(f"--{name.replace('_', '-')}", fault, "leave it out")
 
 
 def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
@@ -146,10 +196,24 @@ def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
         raise UsageError("--all-contacts", fault, "ask for --method certified")
 
 
+def _overlaps(scene: Scene, wanted: _Wanted, asked: dict[str, Any]) -> Overlaps:
+    """Return the question about overlaps, not yet advanced."""
+    try:
+        with usage_errors():
+            return scene.overlaps(_pairs(scene, wanted), **asked)
+    except SceneError as fault:
+        raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault
+
+
+def _pairs(scene: Scene, wanted: _Wanted) -> list[tuple[str, str]] | None:
+    """Return the pairs that are asked about, by name; None: all."""
+    names = {body.name for body in scene.bodies}
+    return [_pair(text, names) for text in wanted.pairs] or None
+
+
 def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
     """Return the question, not yet advanced."""
-    names = {body.name for body in scene.bodies}
-    pairs = [_pair(text, names) for text in wanted.pairs] or None
+    pairs = _pairs(scene, wanted)
     try:
         if wanted.all_contacts:
             return scene.contacts(wanted.limit, pairs)
@@ -209,53 +273,14 @@ def _record(
     Raises:
         ObbError: a body's file is not what it was when the scene was read.
     """
-    from obbcli.files import file_of
-    from obbcli.report.record import Source, file_sha256
-    from obbcli.report.rows import told_units
-    from obbcli.report.scene import mesh_paths, scene_record
+    from obbcli.report.scene import scene_record
 
     asked = found.asked
-    shapes = zip(asked.bodies, asked.shapes, strict=True)
-    made: dict[str, list[Mesh | ObbTree | TreeHead]] = {}
-    for body, shape in shapes:
-        made.setdefault(str(body.body.shape), []).append(shape)
-    meshes = []
-    for path in mesh_paths(asked):
-        digest = None if stamps is None else file_sha256(file_of(path), stamps[path])
-        # A file may be taken in several units.
-        notes = dict.fromkeys(note for shape in made[path] for note in shape.notes)
-        meshes.append(Source.of(path, digest, made[path][0])._replace(notes=tuple(notes)))
-    if not meshes:  # the parts of the scene's own file
-        meshes = [_file_of_parts(source, scene, found)]
-    meshes = told_units(meshes)
+    meshes = mesh_sources(source, scene, asked, found.stats, stamps)
     is_hashed = stamps is not None
     record = scene_record(source, meshes, asked, scene.ignore, answer, with_motion=is_hashed)
-    record["stats"] |= _decoded(scene)
+    record["stats"] |= decoded(scene)
     return record
-
-
-def _decoded(scene: Scene) -> Record:
-    """Return how many meshes of a scene's own file were decoded; nothing of other scenes."""
-    from obbcli.motion.assembly import LazyMesh
-
-    shapes = {id(body.body.shape): body.body.shape for body in scene.bodies}
-    parts = [shape for shape in shapes.values() if isinstance(shape, LazyMesh)]
-    if not parts:
-        return {}
-    done = sum(shape.is_decoded for shape in parts)
-    return {"meshes_decoded": done, "meshes_possible": len(parts)}
-
-
-def _file_of_parts(source: Source, scene: Scene, found: ContactStream) -> Source:
-    """Return what is said of the mesh file that a scene's bodies are parts of.
-
-    Its triangles are counted where all of it was asked about: what is not is not decoded.
-    """
-    asked = found.asked
-    is_whole = len(asked.bodies) == len(scene.bodies)
-    counts = [body.triangle_count or 0 for body in found.stats.bodies]
-    notes = dict.fromkeys(note for shape in asked.shapes for note in shape.notes)
-    return source._replace(triangle_count=sum(counts) if is_whole else None, notes=tuple(notes))
 
 
 def _show(record: Record, common: CommonOptions, *, explains: bool) -> None:

@@ -1,5 +1,6 @@
-// What one posed surface answers about points, boxes and cells across the border: for tests, which
-// hold the parts of overlap queries against definitions.
+// What one posed surface answers about points, boxes and cells across the border: for the question
+// which solid lies in which, and for tests, which hold the parts of overlap queries against
+// definitions.
 #include "bindings/module.hpp"
 
 #include "overlap/escape_row.hpp"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from obbcli.accuracy import DEPTH_TOLERANCE
 from obbcli.errors import MotionError
 from obbcli.questions.overlap.along import unit_direction
 from obbcli.questions.overlap.band import checked_touch
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import Vector
 
-TOLERANCE = 1e-2
-"""The relative width asked of brackets where the caller asks for none."""
 CONCERNS = frozenset({"clearance", "max_iterations", "timeout"})
 """The fields of `Accuracy` that say something about an overlap."""
 
@@ -34,18 +33,20 @@ class Asked(NamedTuple):
         direction: unit; the way on which A is to leave B. None: not asked.
         values: whether depths are to be narrowed down to the tolerance: `"all"`; `"deep"`, those
             of bodies that do more than touch; `"none"`, as far as the answer needs it.
+        has_volume: whether the shared volume is asked for where depths are narrowed down.
     """
 
-    tolerance: float = TOLERANCE
+    tolerance: float = DEPTH_TOLERANCE
     deeper_than: float | None = None
     touch: tuple[float, float] | None = None
     direction: Vector | None = None
-    values: str = "all"
+    values: Literal["all", "deep", "none"] = "all"
+    has_volume: bool = True
 
     @classmethod
     def of(
         cls,
-        tolerance: float = TOLERANCE,
+        tolerance: float = DEPTH_TOLERANCE,
         deeper_than: float | None = None,
         touch: Sequence[float] | None = None,
         along: ArrayLike | None = None,

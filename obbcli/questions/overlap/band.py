@@ -9,6 +9,7 @@ import numpy as np
 from obbcli.answers.overlap import Band
 from obbcli.arrays import as_floats
 from obbcli.errors import MotionError
+from obbcli.mesh.spacing import COARSEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +23,9 @@ FLOOR = 1e-9
 """Of the pair's size: depths are not told apart below it."""
 _SPACINGS = 4.0
 _ASKED = "asked for"
+# Of the largest coordinate of any body, plus both sags: no default gap is wider. Sizes are at most
+# 2 sqrt(3) times that coordinate.
+MOST_GAP = _SPACINGS * COARSEST + 4.0 * FLOOR
 
 
 def band_of(pair: PairQuestion, touch: Sequence[float] | None) -> Band:

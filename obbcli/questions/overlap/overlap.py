@@ -6,17 +6,18 @@ import time
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
-from obbcli.accuracy import Accuracy
-from obbcli.answers.overlap import Depth, Gap, Overlap
+from obbcli.accuracy import DEPTH_TOLERANCE, Accuracy
+from obbcli.answers.overlap import Gap, Overlap, OverlapStats
 from obbcli.questions.border import refused, stats_of
 from obbcli.questions.containment import body_name, why_open
 from obbcli.questions.distance import measure
 from obbcli.questions.overlap.along import separation_along
-from obbcli.questions.overlap.asked import TOLERANCE, Asked, refuse_other_accuracy
+from obbcli.questions.overlap.asked import Asked, refuse_other_accuracy
 from obbcli.questions.overlap.band import band_of
+from obbcli.questions.overlap.depths import NOTHING
 from obbcli.questions.overlap.meeting import inner_of, share_inside, surfaces_meet
 from obbcli.questions.overlap.pursuit import Pursuit
-from obbcli.questions.overlap.same import are_equal
+from obbcli.questions.overlap.solids import DEPTHS, Solids
 from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from obbcli.answers.overlap import RelationWord
     from obbcli.motion.body import Body, Shape
 
-_NOTHING = Depth(bounds=(0.0, 0.0))
 _TOUCH = Gap(bounds=(0.0, 0.0))
 
 
@@ -37,7 +37,7 @@ def overlap(
     b: Body | Shape,
     accuracy: Accuracy | None = None,
     *,
-    tolerance: float = TOLERANCE,
+    tolerance: float = DEPTH_TOLERANCE,
     deeper_than: float | None = None,
     touch: Sequence[float] | None = None,
     along: ArrayLike | None = None,
@@ -109,8 +109,14 @@ def overlap_of(pair: PairQuestion, asked: Asked) -> Overlap:
         **found,
         band=question.band,
         complete=question.pursuit.is_complete,
-        stats=stats_of(pair.trees, question.pursuit.counts, seconds),
+        stats=_stats(pair, question.pursuit, seconds),
     )
+
+
+def _stats(pair: PairQuestion, pursuit: Pursuit, seconds: dict[str, float]) -> OverlapStats:
+    """Return what a question cost."""
+    counted = stats_of(pair.trees, pursuit.counts, seconds)._asdict()
+    return OverlapStats(**counted, cells=pursuit.cells, points=pursuit.points, rays=pursuit.rays)
 
 
 class _Question:
@@ -164,20 +170,18 @@ class _Question:
             return {"relation": "unresolved"}
         is_deep, inner = inner_of(share_a, share_b)
         relation, distance = self._by_distance()
-        depths = {"thickness": _NOTHING, "protrusion_a": _NOTHING, "protrusion_b": _NOTHING}
-        if not is_deep:
-            return {"relation": relation, "distance": distance, **depths}
-        return {
-            "relation": "overlapping" if inner is None else "contained",
-            "contained": inner,
-            "distance": distance,
-        }
+        found: dict[str, Any] = {"relation": relation, "distance": distance}
+        if is_deep:
+            solids = Solids(self._pair, self._asked, self.band, self.pursuit, inner)
+            return found | solids.related()
+        if self._asked.deeper_than is not None:
+            found["deeper"] = False
+        return found | dict.fromkeys(DEPTHS, NOTHING)
 
     def _of_meeting_solids(self) -> dict[str, Any]:
         """Return what is said of solids whose surfaces meet."""
-        if are_equal(self._pair):
-            return {"relation": "duplicate", "distance": _TOUCH}
-        return {"relation": "unresolved", "distance": _TOUCH}
+        solids = Solids(self._pair, self._asked, self.band, self.pursuit)
+        return {"distance": _TOUCH, **solids.related()}
 
     def _by_distance(self) -> tuple[RelationWord, Gap]:
         """Return the relation of surfaces that do not meet, and how far apart they are."""

@@ -29,11 +29,15 @@ class Pursuit:
     Attributes:
         counts: what the searches have cost so far.
         is_complete: whether no search was ended by a limit.
+        cells: pieces of space and of surfaces that were bounded.
+        points: points whose depth was measured.
+        rays: that told what is inside.
     """
 
     def __init__(self, accuracy: Accuracy) -> None:
         self.counts = Counts()
         self.is_complete = True
+        self.cells = self.points = self.rays = 0
         self._budget = Budget(accuracy.max_iterations, accuracy.timeout).start()
 
     @property
@@ -69,6 +73,12 @@ class Pursuit:
     def count(self, counts: tuple[int, int, int, int, int]) -> None:
         """Add what a search has cost."""
         self.counts += Counts(*counts)
+
+    def count_cells(self, cells: int, points: int, rays: int) -> None:
+        """Add what a search for a depth has cost."""
+        self.cells += cells
+        self.points += points
+        self.rays += rays
 
     def spend(self, counts: Counts) -> None:
         """Add what a search has cost that took its steps by itself."""

@@ -29,6 +29,7 @@ _DOCUMENTS = {
     "info": ("obbtree info --json", "files"),
     "overlap": ("obbtree overlap --json", "overlaps"),
     "scene": ("obbtree scene --json", "answers"),
+    "scene-overlaps": ("obbtree scene --overlaps --json", "overlaps"),
     "stability": ("obbtree stability --json", "studies"),
     "sweep": ("the first line of the results of obbtree sweep", "files"),
     "sweep-row": ("every other line of the results of obbtree sweep", "files"),

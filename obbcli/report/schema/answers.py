@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from obbcli.answers.collision import Collision
 from obbcli.answers.distance import Distance
+from obbcli.report.schema.relations import relation_fields
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     COUNTERS,
@@ -56,9 +57,8 @@ def collide() -> Schema:
         "pairs": told(list_of(_PAIR_OF_TRIANGLES), "row of A, row of B, sorted; with --all-pairs"),
         "pairs_complete": told(FLAG, "whether these are all"),
     }
-    return pair_document(
-        "collide", record(fields | pairs | PART_NAMES, optional={*pairs, *PART_NAMES}), solid=_SOLID
-    )
+    more = pairs | PART_NAMES | relation_fields()
+    return pair_document("collide", record(fields | more, optional=more), solid=_SOLID)
 
 
 def first_contact() -> Schema:
@@ -103,17 +103,17 @@ def scene() -> Schema:
         inputs,
         duration=told(AMOUNT, "s"),
         bodies=list_of({"oneOf": [_body(RIGID_FIELDS), _body(PATH_FIELDS)]}),
-        ignore=list_of(_IGNORE),
+        ignore=list_of(IGNORE),
         accuracy=ref("accuracy"),
         solid=told(FLAG, "whether a body inside another counts as contact; no key where not"),
         result=_scene_result(),
-        stats=_scene_stats(),
+        stats=scene_stats(),
     )
     schema["required"].remove("solid")
     return schema
 
 
-_IGNORE = {
+IGNORE = {
     "oneOf": [
         record({"bodies": told(list_of(TEXT, 2), "the names of two bodies")}),
         record({"groups": told(list_of(TEXT), "of bodies in this group, or in these two")}),
@@ -121,14 +121,16 @@ _IGNORE = {
 }
 
 
+BODY_FIELDS: dict[str, Schema] = {
+    "name": TEXT,
+    "mesh": told(COUNT, "which of inputs.meshes"),
+    "static": told(FLAG, "whether pairs of static bodies are left out"),
+    "group": or_null(TEXT),
+}
+
+
 def _body(movement: dict[str, Schema]) -> Schema:
-    head = {
-        "name": TEXT,
-        "mesh": told(COUNT, "which of inputs.meshes"),
-        "static": told(FLAG, "whether pairs of static bodies are left out"),
-        "group": or_null(TEXT),
-    }
-    return record(head | movement)
+    return record(BODY_FIELDS | movement)
 
 
 def _scene_result() -> Schema:
@@ -148,7 +150,8 @@ def _scene_result() -> Schema:
     )
 
 
-def _scene_stats() -> Schema:
+def scene_stats() -> Schema:
+    """Return the schema of what became of a scene's pairs, and what it took."""
     counts = dict.fromkeys(("pairs", *_FATES, "later", *COUNTERS), COUNT)
     body = documented(
         BodyStats,

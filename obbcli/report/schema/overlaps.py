@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
-from obbcli.answers.overlap import Band, Depth, Gap, Overlap, SeparationAlong
-from obbcli.report.schema.shared import STATS_FIELDS, pair_document
-from obbcli.report.schema.typed import schemas_of
-from obbcli.report.schema.words import AMOUNT, Schema, or_null, record, ref, told
+from obbcli.answers.overlap import OverlapStats
+from obbcli.report.schema.answers import BODY_FIELDS, IGNORE, scene_stats
+from obbcli.report.schema.relations import overlap_fields
+from obbcli.report.schema.shared import STATS_FIELDS, document, pair_document
+from obbcli.report.schema.words import (
+    AMOUNT,
+    COUNT,
+    FLAG,
+    TEXT,
+    Schema,
+    documented,
+    list_of,
+    or_null,
+    record,
+    ref,
+    told,
+    tuple_of,
+)
+from obbcli.scene.overlaps import SceneOverlap
 
 
 def overlap() -> Schema:
@@ -14,23 +29,37 @@ def overlap() -> Schema:
         "tolerance": told(AMOUNT, "relative width asked of brackets"),
         "deeper_than": told(or_null(AMOUNT), "mesh units; null where it was not asked"),
     }
-    return pair_document(
-        "overlap", overlap_result(), stats=record(STATS_FIELDS), asked=record(asked)
-    )
+    return pair_document("overlap", record(overlap_fields()), stats=_stats(), asked=record(asked))
 
 
-def overlap_result() -> Schema:
-    """Return the schema of an answer."""
-    depth = record(schemas_of(Depth))
-    fields = schemas_of(
-        Overlap,
-        band=record(schemas_of(Band)),
-        distance=record(schemas_of(Gap)),
-        thickness=depth,
-        protrusion_a=depth,
-        protrusion_b=depth,
-        separation_along=record(schemas_of(SeparationAlong)),
-        stats=ref("stats"),
+def _stats() -> Schema:
+    more = documented(OverlapStats, dict.fromkeys(("cells", "points", "rays"), COUNT))
+    return record(STATS_FIELDS | more)
+
+
+def scene_overlaps() -> Schema:
+    """Return the schema of `obbtree scene --overlaps`."""
+    inputs = record(
+        {"scene": ref("source"), "meshes": told(list_of(ref("source")), "of the bodies, each once")}
     )
-    del fields["stats"]
-    return record(fields)
+    asked = {
+        "tolerance": told(AMOUNT, "relative width asked of brackets"),
+        "touch": told(
+            or_null(tuple_of(AMOUNT, AMOUNT)), "gap and overlap, mesh units; null: the default"
+        ),
+    }
+    pair = record(documented(SceneOverlap, {"body_a": TEXT, "body_b": TEXT}) | overlap_fields())
+    result = {
+        "pairs": told(list_of(pair), "those that are not clear, in the order of the bodies"),
+        "interrupted": told(FLAG, "whether Ctrl-C ended the search"),
+    }
+    return document(
+        "scene-overlaps",
+        inputs,
+        bodies=list_of(record(BODY_FIELDS | {"pose": ref("pose")})),
+        ignore=list_of(IGNORE),
+        accuracy=ref("accuracy"),
+        asked=record(asked),
+        result=record(result),
+        stats=scene_stats(),
+    )

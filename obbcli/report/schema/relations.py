@@ -1,0 +1,30 @@
+"""Schemas of how two bodies lie to each other, which several documents say."""
+
+from __future__ import annotations
+
+from obbcli.answers.overlap import Band, Depth, Gap, Overlap, SeparationAlong, Volume
+from obbcli.report.schema.typed import schemas_of
+from obbcli.report.schema.words import Schema, record, ref
+
+_DEPTH_FIELDS = ("thickness", "protrusion_a", "protrusion_b")
+
+
+def overlap_fields() -> dict[str, Schema]:
+    """Return the schema of each field of an answer, less what it cost."""
+    fields = schemas_of(
+        Overlap,
+        band=record(schemas_of(Band)),
+        distance=record(schemas_of(Gap)),
+        volume=record(schemas_of(Volume)),
+        separation_along=record(schemas_of(SeparationAlong)),
+        stats=ref("stats"),
+        **dict.fromkeys(_DEPTH_FIELDS, record(schemas_of(Depth))),
+    )
+    del fields["stats"]
+    return fields
+
+
+def relation_fields() -> dict[str, Schema]:
+    """Return the schema of what `obbtree collide --relation` adds to its answer."""
+    fields = overlap_fields()
+    return {name: fields[name] for name in ("relation", *_DEPTH_FIELDS)}
