@@ -157,7 +157,7 @@ std::span<const HeightGap> HeightSearch::find(const Prism& prism, double floor, 
             continue;
         }
         const Node& node = tree.node(ref);
-        const Span span = span_of(surface_->box(node), prism);
+        const Span span = span_of(surface_->box(ref), prism);
         if (is_settled(span)) {
             continue;
         }

@@ -95,8 +95,7 @@ void NearestSearch::open_up(const NodeRef& ref) {
 void NearestSearch::push(const NodeRef& ref) {
     double low = 0;
     if (!ref.is_triangle()) {
-        low = least_distance(surface_->box(surface_->tree().node(ref)), point_, surface_->blur(),
-                             surface_->skew());
+        low = least_distance(surface_->box(ref), point_, surface_->blur(), surface_->skew());
     }
     stack_.push_back({ref, low});
 }

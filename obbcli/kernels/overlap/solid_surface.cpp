@@ -4,6 +4,7 @@
 #include "shapes/extremes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace obb {
@@ -19,7 +20,8 @@ namespace obb {
 // Skew. Of the rotated axes R b_i and R b_j the product differs from that of b_i and b_j by at most
 // |b_i|_1 |b_j|_1 <= 3 times the skew of R; the axes b are orthonormal to 16 u, and rounded again.
 SolidSurface::SolidSurface(const TreeView& tree, const Pose& pose, const OverlapFrame& frame)
-    : body_(tree, pose), frame_(frame) {
+    : body_(tree, pose), frame_(frame),
+      kept_(std::bit_floor(std::clamp<std::uint32_t>(tree.triangle_count(), 1, kMostKept))) {
     const Vec3 shift = scaled(pose.translation, -frame.exponent);
     body_.set_frame(pose.rotation, shift - frame.origin, frame.exponent);
     const double sizes = 2 * body_.node_scale() + norm_inf(shift) + norm_inf(frame.origin);

@@ -8,6 +8,7 @@
 #include "shapes/triangle.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace obb {
 
@@ -22,6 +23,17 @@ class SolidSurface {
     // A box in the frame, at most 1 + 2 skew() long axes. What it holds, the posed vertices rounded
     // to double, may stick out of it by blur() along any axis of the frame or of the box.
     [[nodiscard]] Obb box(const Node& node) const { return body_.box(node); }
+    // The same of a node that is no triangle; valid until the next one is asked for. Searches come
+    // by the same boxes again and again, and to turn one takes longer than to look at it: those
+    // looked at last are kept.
+    [[nodiscard]] const Obb& box(const NodeRef& ref) const {
+        Kept& kept = kept_[ref.slot % kept_.size()];
+        if (kept.slot != ref.slot) {
+            kept.box = body_.box(tree().node(ref)); // before the slot: it may throw
+            kept.slot = ref.slot;
+        }
+        return kept.box;
+    }
     [[nodiscard]] double blur() const { return blur_; }
     // How far the pose's matrix is from orthonormal, and rounding.
     [[nodiscard]] double skew() const { return skew_; }
@@ -35,10 +47,18 @@ class SolidSurface {
     [[nodiscard]] std::uint32_t id(const NodeRef& ref) const { return body_.id(ref); }
 
   private:
+    static constexpr std::uint32_t kMostKept = 2048;
+    static constexpr std::uint32_t kNoSlot = 0xffffffff;
+    struct Kept {
+        Obb box;
+        std::uint32_t slot = kNoSlot;
+    };
+
     PosedTree body_;
     OverlapFrame frame_;
     double blur_ = 0;
     double skew_ = 0;
+    mutable std::vector<Kept> kept_; // of one query, which one thread at a time goes on with
 };
 
 } // namespace obb

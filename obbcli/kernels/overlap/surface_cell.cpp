@@ -7,7 +7,7 @@
 namespace obb {
 
 Obb grown_box(const SolidSurface& surface, const SurfaceCell& cell) {
-    Obb box = surface.box(surface.tree().node(cell.ref));
+    Obb box = surface.box(cell.ref);
     const double more = 2 * surface.blur();
     box.half_extents = box.half_extents + Vec3{more, more, more};
     return box;

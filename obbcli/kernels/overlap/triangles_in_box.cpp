@@ -56,7 +56,7 @@ bool BoxSearch::find(const Obb& box, double pad, std::size_t most, std::vector<N
             continue;
         }
         const Node& node = tree.node(ref);
-        if (are_separated(large, surface_->box(node), for_boxes)) {
+        if (are_separated(large, surface_->box(ref), for_boxes)) {
             continue;
         }
         tree.prepare(ref);

@@ -55,7 +55,7 @@ Winding WindingSearch::find(const Vec3& world) {
             continue;
         }
         const Node& node = tree.node(ref);
-        if (!may_be_met(surface_->box(node), place, surface_->blur())) {
+        if (!may_be_met(surface_->box(ref), place, surface_->blur())) {
             continue;
         }
         tree.prepare(ref);
