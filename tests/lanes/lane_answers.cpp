@@ -5,7 +5,6 @@
 #include "distance/distance_query.hpp"
 #include "in_motion/contact_query.hpp"
 #include "numbers/registers.hpp"
-#include "shapes/lanes.hpp"
 #include "tree/crc32.hpp"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // separated" may be caution. Eberly 2008 §2.2.1 Table 1 and §3.2.1 Table 3.
 #pragma once
 
-#include "numbers/pack.hpp"
+#include "numbers/vec.hpp"
 #include "shapes/obb.hpp"
 #include "shapes/triangle.hpp"
 
@@ -29,45 +29,43 @@ struct RoundingBound {
 // Comparisons are such that a NaN, from the damaged box of an unverified tree, separates nothing.
 //
 // Each group of axes is judged as a whole: which of its axes separates is as good as random, and a
-// mispredicted branch costs more than an axis. On packs a mask tells which pairs are separated.
-template <typename Real>
-[[nodiscard]] inline auto are_separated(const BasicObb<Real>& a, const BasicObb<Real>& b,
-                                        const RoundingBound& bound) {
-    const Vector3<Real> d = b.center - a.center;
-    const Vector3<Real> ha = a.half_extents, hb = b.half_extents;
-    const Real sizes = absolute_sum(d) + (ha.x + ha.y + ha.z) + (hb.x + hb.y + hb.z);
-    const Real e = bound.relative * sizes + bound.absolute;
+// mispredicted branch costs more than an axis.
+[[nodiscard]] inline bool are_separated(const Obb& a, const Obb& b, const RoundingBound& bound) {
+    const Vec3 d = b.center - a.center;
+    const Vec3 ha = a.half_extents, hb = b.half_extents;
+    const double sizes = norm_1(d) + (ha.x + ha.y + ha.z) + (hb.x + hb.y + hb.z);
+    const double e = bound.relative * sizes + bound.absolute;
 
     // c[i][j] = A_i . B_j, t[i] = A_i . D
-    Real c[3][3], r[3][3], t[3];
-    auto apart = d.x < d.x; // never, whatever d.x is; of the right type
+    double c[3][3], r[3][3], t[3];
+    bool apart = false;
     for (std::size_t i = 0; i < 3; ++i) {
         t[i] = dot(a.axes[i], d);
         for (std::size_t j = 0; j < 3; ++j) {
             c[i][j] = dot(a.axes[i], b.axes[j]);
-            r[i][j] = absolute(c[i][j]);
+            r[i][j] = std::fabs(c[i][j]);
         }
-        const Real radius_b = hb.x * r[i][0] + hb.y * r[i][1] + hb.z * r[i][2];
-        apart |= absolute(t[i]) > ha[i] + radius_b + e;
+        const double radius_b = hb.x * r[i][0] + hb.y * r[i][1] + hb.z * r[i][2];
+        apart |= std::fabs(t[i]) > ha[i] + radius_b + e;
     }
-    if (is_all(apart)) {
-        return apart;
+    if (apart) {
+        return true;
     }
     for (std::size_t j = 0; j < 3; ++j) {
-        const Real distance = absolute(t[0] * c[0][j] + t[1] * c[1][j] + t[2] * c[2][j]);
-        const Real radius_a = ha.x * r[0][j] + ha.y * r[1][j] + ha.z * r[2][j];
+        const double distance = std::fabs(t[0] * c[0][j] + t[1] * c[1][j] + t[2] * c[2][j]);
+        const double radius_a = ha.x * r[0][j] + ha.y * r[1][j] + ha.z * r[2][j];
         apart |= distance > hb[j] + radius_a + e;
     }
-    if (is_all(apart)) {
-        return apart;
+    if (apart) {
+        return true;
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (std::size_t j = 0; j < 3; ++j) {
             const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            const Real distance = absolute(t[i2] * c[i1][j] - t[i1] * c[i2][j]);
-            const Real radius_a = ha[i1] * r[i2][j] + ha[i2] * r[i1][j];
-            const Real radius_b = hb[j1] * r[i][j2] + hb[j2] * r[i][j1];
+            const double distance = std::fabs(t[i2] * c[i1][j] - t[i1] * c[i2][j]);
+            const double radius_a = ha[i1] * r[i2][j] + ha[i2] * r[i1][j];
+            const double radius_b = hb[j1] * r[i][j2] + hb[j2] * r[i][j1];
             apart |= distance > radius_a + radius_b + e;
         }
     }

@@ -7,15 +7,6 @@
 namespace obb {
 namespace {
 
-template <typename Real>
-OBB_INLINE Lanes3<Real> difference(const Lanes3<Real>& a, const Lanes3<Real>& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-template <typename Real>
-OBB_INLINE Real absolute_sum(const Lanes3<Real>& a) {
-    return magnitude(a[0]) + magnitude(a[1]) + magnitude(a[2]);
-}
-
 // Whether all points are above a plane, or all below, beyond rounding: triple_error() in lanes.
 template <typename Real>
 OBB_INLINE unsigned on_one_side(const LaneTriangles<Real>& plane, const LaneTriangles<Real>& other,

@@ -7,7 +7,8 @@
 // n.(K_t + (k.Ry) k), radius rho |n x k|. Each is a proof for all of [t, t + h).
 #pragma once
 
-#include "numbers/pack.hpp"
+#include "numbers/one_lane.hpp"
+#include "numbers/registers.hpp"
 #include "shapes/screw.hpp"
 
 #include <limits>
@@ -29,12 +30,12 @@ struct MovingFrame {
 // The positive root of g + w h - a h^2 / 2 for g > 0 and a >= 0: infinite where the gap never
 // closes. Written so that nothing cancels; 2^-48 covers its rounding.
 template <typename Real>
-[[nodiscard]] inline Real closing_time(Real g, Real w, Real a) {
-    const Real root = square_root(w * w + 2.0 * a * g);
-    const auto opens = w > every(0.0, w);
-    const Real numerator = select(opens, root + w, 2.0 * g);
+[[nodiscard]] OBB_INLINE Real closing_time(const Real& g, const Real& w, const Real& a) {
+    const Real root = root_of(w * w + Real(2.0) * a * g);
+    const auto opens = w > Real(0.0);
+    const Real numerator = select(opens, root + w, Real(2.0) * g);
     const Real denominator = select(opens, a, root - w);
-    return (1.0 - 0x1p-48) * numerator / denominator;
+    return Real(1.0 - 0x1p-48) * numerator / denominator;
 }
 
 } // namespace obb

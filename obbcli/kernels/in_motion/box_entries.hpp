@@ -1,8 +1,8 @@
 // When boxes under a constant velocity may first and last touch: four pairs at once.
 #pragma once
 
-#include "shapes/lanes.hpp"
-#include "shapes/obb.hpp"
+#include "in_motion/moving_boxes.hpp"
+#include "numbers/vec.hpp"
 
 #include <array>
 
@@ -23,8 +23,7 @@ struct BoxEntries {
     std::array<double, 4> entry, exit;
 };
 
-// Two boxes of A, then two of B, as place_boxes() leaves them: entry 2 i + j is that of A's i-th
-// and B's j-th.
-[[nodiscard]] BoxEntries box_entries(const BasicObb<Four>& boxes, const ClosingFrame& frame);
+// Two boxes of A and two of B: entry 2 i + j is that of A's i-th and B's j-th.
+[[nodiscard]] BoxEntries box_entries(const PlacedBoxes& boxes, const ClosingFrame& frame);
 
 } // namespace obb

@@ -1,5 +1,8 @@
 #include "in_motion/box_steps.hpp"
 
+#include "numbers/lane_moves.hpp"
+#include "numbers/lane_vectors.hpp"
+
 namespace obb {
 
 namespace {
@@ -7,158 +10,243 @@ namespace {
 // Square of what a computed spin axis may be off by.
 constexpr double kAxisError = 0x1p-100;
 
-// What all axes need of the boxes whose axes they are (own) and of the others, across the gap.
-struct alignas(kAlignment<Four>) Sides {
-    BasicObb<Four> other;
-    std::array<Vector3<Four>, 3> other_velocity;             // W x axes of the others
-    alignas(kAlignment<Four>) std::array<Four, 3> along_own; // own spin axis . own axes
-    Vector3<Four> other_axis;                                // spin axis of the others
-    Vector3<Four> between, velocity;                         // from own to other
-    Vector3<Four> circles;                                   // between the circles' centres
-    Vector3<Four> drift;                                     // closing velocity of the pivots
-    Four span, other_span;     // reach of the boxes along their own spin axes
-    Four pull, other_pull;     // |W|^2 times the distance of the farthest point from the axis
-    Four radius, other_radius; // that distance
-    FourMask other_is_still;
-    Four error, velocity_error, drift_error;
-};
+template <typename Real>
+using Axes = std::array<Lanes3<Real>, 3>;
 
-Four radius_along(const BasicObb<Four>& box, const Vector3<Four>& n,
-                  const std::array<Vector3<Four>, 3>& axes) {
-    const Vector3<Four>& h = box.half_extents;
-    return h.x * absolute(dot(n, axes[0])) + h.y * absolute(dot(n, axes[1])) +
-           h.z * absolute(dot(n, axes[2]));
+// A way from A to B as either body sees it.
+template <typename Real>
+OBB_INLINE Lanes3<Real> either_way(const Vec3& v) {
+    return {alternating<Real>(v.x, -v.x), alternating<Real>(v.y, -v.y),
+            alternating<Real>(v.z, -v.z)};
 }
 
-// One axis a lane; what the own boxes add along it is known.
-struct alignas(kAlignment<Four>) OwnReach {
-    Four width, velocity_spread;
-    Four lever_square; // |n x k|^2 of the own spin axis k, rounded up
+// From each lane the box across the gap.
+template <typename Real>
+OBB_INLINE Real across(const Real& own) {
+    return shuffled<1, 0>(own);
+}
+template <typename Real>
+OBB_INLINE Lanes3<Real> across(const Lanes3<Real>& own) {
+    return {across(own[0]), across(own[1]), across(own[2])};
+}
+
+double drift_error(const MovingFrame& frame) {
+    return frame.relative * norm_1(frame.closing_velocity);
+}
+
+template <typename Real>
+OBB_INLINE Real radius_along(const Lanes3<Real>& h, const Lanes3<Real>& n, const Axes<Real>& axes) {
+    return h[0] * magnitude(inner(n, axes[0])) + h[1] * magnitude(inner(n, axes[1])) +
+           h[2] * magnitude(inner(n, axes[2]));
+}
+
+// The same of each of three.
+template <typename Real, typename Of>
+OBB_INLINE auto each(const std::array<Real, 3>& all, const Of& of) {
+    return std::array{of(all[0]), of(all[1]), of(all[2])};
+}
+
+// What only bounds by whole circles need.
+template <typename Real>
+struct Circles {
+    Lanes3<Real> middle; // of the centre's
+    Real span;           // reach of the boxes along their spin axes
+    typename Real::Mask is_still;
 };
 
-Four step_along(const Vector3<Four>& n, const OwnReach& own, const Sides& s,
-                const LaneMotion& motion, bool is_long) {
-    const Four zero = every(0.0, own.width);
-    const Four offset = dot(n, s.between);
-    const Four gap =
-        absolute(offset) - own.width - radius_along(s.other, n, s.other.axes) - s.error;
+// What all axes need of the boxes whose axes they are.
+template <typename Real>
+struct Own {
+    Lanes3<Real> center, half_extents;
+    Axes<Real> axes, velocity; // W x axes
+    Lanes3<Real> along_spin;   // spin axis . axes
+    Lanes3<Real> spin_axis;
+    Lanes3<Real> center_velocity; // W x center
+    Real radius;                  // distance of the farthest point from the spin axis
+    Real pull;                    // |W|^2 times that
+    Real sizes, extents, speed;
+};
+
+// The boxes across the gap.
+template <typename Real>
+struct Facing {
+    Lanes3<Real> half_extents;
+    Axes<Real> axes, box_velocity; // W x axes
+    Lanes3<Real> spin_axis;
+    Lanes3<Real> pivots, drift;     // from own pivot to the other, and its velocity
+    Lanes3<Real> between, velocity; // the same of the centres
+    Real pull, error, velocity_error;
+};
+
+// One axis a lane; what the own boxes add along it is known.
+template <typename Real>
+struct OwnReach {
+    Real width, velocity_spread;
+    Real lever_square; // |n x k|^2 of the own spin axis k, rounded up
+};
+
+// Where the two end along an axis, and how far they reach around their spins.
+template <typename Real>
+struct Ends {
+    Real offset, width, other_width, along_other, lever, other_lever;
+};
+
+template <typename Real>
+OBB_INLINE Own<Real> own_of(const LaneMotion& motion, const PlacedBoxes& boxes) {
+    const Lanes3<Real> h = lanes_at<Real>(boxes.half_extents);
+    const Lanes3<Real> center = lanes_at<Real>(boxes.center);
+    const Lanes3<Real> spin_axis = lanes_at<Real>(motion.axis);
+    const Lanes3<Real> w = lanes_at<Real>(motion.velocity);
+    const auto turned = [&](const PairLanes3& axis) __attribute__((always_inline)) {
+        return outer(w, lanes_at<Real>(axis));
+    };
+    const auto along = [&](const PairLanes3& axis) __attribute__((always_inline)) {
+        return inner(spin_axis, lanes_at<Real>(axis));
+    };
+    const auto axis = [](const PairLanes3& lanes)
+                          __attribute__((always_inline)) { return lanes_at<Real>(lanes); };
+    const Lanes3<Real> from_axis = outer(spin_axis, center);
+    const Real radius =
+        Real(1.0 + 0x1p-26) * (root_of(inner(from_axis, from_axis)) + root_of(inner(h, h)));
+    const Real extents = h[0] + h[1] + h[2];
+    return {center,
+            h,
+            each(boxes.axes, axis),
+            each(boxes.axes, turned),
+            each(boxes.axes, along),
+            spin_axis,
+            outer(w, center),
+            radius,
+            Real::at(motion.square.data()) * radius,
+            absolute_sum(center) + extents,
+            extents,
+            Real::at(motion.speed.data())};
+}
+
+template <typename Real>
+OBB_INLINE Circles<Real> circles_of(const Own<Real>& own) {
+    const Lanes3<Real>& h = own.half_extents;
+    const auto is_still = own.speed <= Real{};
+    const Real along = inner(own.spin_axis, own.center);
+    return {{select(is_still, own.center[0], along * own.spin_axis[0]),
+             select(is_still, own.center[1], along * own.spin_axis[1]),
+             select(is_still, own.center[2], along * own.spin_axis[2])},
+            h[0] * magnitude(own.along_spin[0]) + h[1] * magnitude(own.along_spin[1]) +
+                h[2] * magnitude(own.along_spin[2]),
+            is_still};
+}
+
+template <typename Real>
+OBB_INLINE Facing<Real> facing(const Own<Real>& own, const LaneMotion& motion,
+                               const MovingFrame& frame) {
+    const auto other = [](const auto& lanes)
+                           __attribute__((always_inline)) { return across(lanes); };
+    const Lanes3<Real> pivots = either_way<Real>(frame.between);
+    const Lanes3<Real> drift = either_way<Real>(frame.closing_velocity);
+    const Real sizes = own.sizes + other(own.sizes);
+    const Real slant = Real(4.0 * motion.skew) * (own.extents + other(own.extents));
+    const Real rounding = Real(frame.relative) * sizes + slant;
+    const Real speeds = own.speed + other(own.speed);
+    return {other(own.half_extents),
+            each(own.axes, other),
+            each(own.velocity, other),
+            other(own.spin_axis),
+            pivots,
+            drift,
+            sum(difference(other(own.center), own.center), pivots),
+            sum(difference(other(own.center_velocity), own.center_velocity), drift),
+            other(own.pull),
+            rounding + Real(frame.absolute),
+            speeds * rounding + Real(drift_error(frame))};
+}
+
+// The bound by whole circles along n, where a gap of them is open; else the shorter step h.
+template <typename Real>
+OBB_INLINE Real circle_step(const Lanes3<Real>& n, const Real& h, const Ends<Real>& ends,
+                            const Own<Real>& own, const Facing<Real>& f, const MovingFrame& frame) {
+    const Circles<Real> circles = circles_of(own);
+    const Lanes3<Real> ways = sum(difference(across(circles.middle), circles.middle), f.pivots);
+    const Real own_circle =
+        select(circles.is_still, ends.width,
+               magnitude(inner(n, own.spin_axis)) * circles.span + own.radius * ends.lever);
+    const Real other_circle = select(across(own.speed) <= Real{}, ends.other_width,
+                                     magnitude(ends.along_other) * across(circles.span) +
+                                         across(own.radius) * ends.other_lever);
+    const Real gap = flipped(inner(n, ways), ends.offset) - own_circle - other_circle - f.error;
+    const Real drift = flipped(inner(n, f.drift), ends.offset) - Real(drift_error(frame));
+    const Real still = closing_time(gap, drift, Real{});
+    return select(gap > Real{}, upper(still, h), h);
+}
+
+template <typename Real>
+OBB_INLINE Real step_along(const Lanes3<Real>& n, const OwnReach<Real>& reach, const Own<Real>& own,
+                           const Facing<Real>& f, const LaneMotion& motion,
+                           const MovingFrame& frame, bool is_long) {
+    const Real zero{};
+    const Real offset = inner(n, f.between);
+    const Real other_width = radius_along(f.half_extents, n, f.axes);
+    const Real gap = magnitude(offset) - reach.width - other_width - f.error;
     const auto is_open = gap > zero;
-    if (is_none(is_open)) {
+    if (bits_of<Real>(is_open) == 0) {
         return zero;
     }
-    const Four w = flipped(dot(n, s.velocity), offset) - own.velocity_spread -
-                   radius_along(s.other, n, s.other_velocity) - s.velocity_error;
-    const Four along_other = dot(n, s.other_axis);
-    const Four other_square = 1.0 + 0x1p-48 + motion.skew - along_other * along_other;
-    const Four lever = square_root(select(own.lever_square > zero, own.lever_square, zero));
-    const Four other_lever = square_root(select(other_square > zero, other_square, zero));
-    Four h = closing_time(gap, w, s.pull * lever + s.other_pull * other_lever);
+    const Real w = flipped(inner(n, f.velocity), offset) - reach.velocity_spread -
+                   radius_along(f.half_extents, n, f.box_velocity) - f.velocity_error;
+    const Real along_other = inner(n, f.spin_axis);
+    const Real other_square = Real(1.0 + 0x1p-48 + motion.skew) - along_other * along_other;
+    const Real lever = root_of(select(reach.lever_square > zero, reach.lever_square, zero));
+    const Real other_lever = root_of(select(other_square > zero, other_square, zero));
+    Real h = closing_time(gap, w, own.pull * lever + f.pull * other_lever);
     if (is_long) {
-        const Four own_circle = select(motion.is_still, own.width,
-                                       absolute(dot(n, motion.axis)) * s.span + s.radius * lever);
-        const Four other_circle =
-            select(s.other_is_still, radius_along(s.other, n, s.other.axes),
-                   absolute(along_other) * s.other_span + s.other_radius * other_lever);
-        const Four circle_gap =
-            flipped(dot(n, s.circles), offset) - own_circle - other_circle - s.error;
-        const Four drift = flipped(dot(n, s.drift), offset) - s.drift_error;
-        const Four still = closing_time(circle_gap, drift, zero);
-        h = select(circle_gap > zero, maximum(still, h), h);
+        h = circle_step(n, h, {offset, reach.width, other_width, along_other, lever, other_lever},
+                        own, f, frame);
     }
     return select(is_open, h, zero);
 }
 
-Sides sides_of(const LaneMotion& motion, const BasicObb<Four>& boxes, const MovingFrame& frame,
-               bool is_long) {
-    Sides s;
-    s.other = swapped(boxes);
-    std::array<Vector3<Four>, 3> velocities;
-    for (std::size_t j = 0; j < 3; ++j) {
-        velocities[j] = cross(motion.velocity, boxes.axes[j]);
-        s.other_velocity[j] = swapped(velocities[j]);
-        s.along_own[j] = dot(motion.axis, boxes.axes[j]);
-    }
-    s.other_axis = swapped(motion.axis);
-    const Vector3<Four> pivots = halves(frame.between, -frame.between);
-    s.between = s.other.center - boxes.center + pivots;
-    const Vector3<Four> center_velocity = cross(motion.velocity, boxes.center);
-    s.drift = halves(frame.closing_velocity, -frame.closing_velocity);
-    s.velocity = swapped(center_velocity) - center_velocity + s.drift;
-    const Vector3<Four> h = boxes.half_extents;
-    const Vector3<Four> from_axis = cross(motion.axis, boxes.center);
-    s.radius = (1.0 + 0x1p-26) * (square_root(dot(from_axis, from_axis)) + square_root(dot(h, h)));
-    s.pull = motion.square * s.radius;
-    s.other_pull = swapped(s.pull);
-    const Four extents = h.x + h.y + h.z;
-    const Four own_sizes = absolute_sum(boxes.center) + extents;
-    const Four sizes = own_sizes + swapped(own_sizes);
-    const Four slant = 4.0 * motion.skew * (extents + swapped(extents));
-    s.error = frame.relative * sizes + slant + frame.absolute;
-    const Four speeds = motion.speed + swapped(motion.speed);
-    const double drift_error = frame.relative * norm_1(frame.closing_velocity);
-    s.velocity_error = speeds * (frame.relative * sizes + slant) + drift_error;
+// Each lane of the pairs says what its own box's axes prove; the longest of both is the pair's.
+template <typename Real>
+OBB_INLINE Real longest_step(const Own<Real>& own, const LaneMotion& motion,
+                             const MovingFrame& frame, bool is_long) {
+    const Facing<Real> f = facing(own, motion, frame);
+    const Lanes3<Real>& h = own.half_extents;
+    Real longest{};
+    unrolled<3>([&](auto k) __attribute__((always_inline)) {
+        const std::size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+        // An axis of a box meets the box itself in one half extent, and of W x the two others it
+        // sees what W has along the third: the skew makes up for axes that are not orthonormal.
+        const OwnReach<Real> reach{
+            h[k],
+            own.speed *
+                (h[k1] * magnitude(own.along_spin[k2]) + h[k2] * magnitude(own.along_spin[k1])),
+            Real(1.0 + 0x1p-48 + motion.skew) - own.along_spin[k] * own.along_spin[k]};
+        longest = upper(longest, step_along(own.axes[k], reach, own, f, motion, frame, is_long));
+    });
     if (is_long) {
-        s.drift_error = every(drift_error, sizes);
-        s.other_is_still = FourMask{motion.is_still[2], motion.is_still[3], motion.is_still[0],
-                                    motion.is_still[1]};
-        s.other_radius = swapped(s.radius);
-        s.span = h.x * absolute(s.along_own[0]) + h.y * absolute(s.along_own[1]) +
-                 h.z * absolute(s.along_own[2]);
-        s.other_span = swapped(s.span);
-        const Four along = dot(motion.axis, boxes.center);
-        Vector3<Four> center;
-        for (std::size_t k = 0; k < 3; ++k) {
-            center[k] = select(motion.is_still, boxes.center[k], along * motion.axis[k]);
-        }
-        s.circles = swapped(center) - center + pivots;
+        const OwnReach<Real> reach{circles_of(own).span, Real{}, Real(kAxisError)};
+        longest = upper(longest, step_along(own.spin_axis, reach, own, f, motion, frame, true));
     }
-    return s;
+    return upper(longest, across(longest));
+}
+
+// Circles say more than parabolas only where much turning is asked about, or left at all.
+bool is_long_motion(const MovingFrame& frame, double wanted) {
+    const double speeds = frame.spin_a->speed() + frame.spin_b->speed();
+    return speeds * wanted > 0.5 || speeds * frame.remaining > 8;
 }
 
 } // namespace
 
-OBB_WIDE void set_turns(LaneMotion& motion, const Turn& a, const Turn& b) {
-    const Four sine = halves(a.sine, b.sine), cosine = halves(a.cosine, b.cosine);
-    const Vector3<Four> k = motion.axis;
-    const Vector3<Four> s = sine * k, v = (1.0 - cosine) * k;
-    const std::array<Vector3<Four>, 3> spun{
-        {{cosine + v.x * k.x, v.x * k.y - s.z, v.x * k.z + s.y},
-         {v.x * k.y + s.z, cosine + v.y * k.y, v.y * k.z - s.x},
-         {v.x * k.z - s.y, v.y * k.z + s.x, cosine + v.z * k.z}}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            motion.matrix[i][j] = dot(spun[i], motion.columns[j]);
-        }
-        motion.shift[i] = dot(spun[i], motion.offset);
-    }
-}
-
-OBB_WIDE std::array<double, 2> box_steps(const LaneMotion& motion, const BasicObb<Four>& boxes,
-                                         const MovingFrame& frame, double wanted) {
-    const double speeds = frame.spin_a->speed() + frame.spin_b->speed();
-    // Circles say more than parabolas only where much turning is asked about, or left at all.
-    const bool is_long = speeds * wanted > 0.5 || speeds * frame.remaining > 8;
-    const Sides s = sides_of(motion, boxes, frame, is_long);
-    const Vector3<Four> h = boxes.half_extents;
-    Four longest = every(0.0, h.x);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-        // An axis of a box meets the box itself in one half extent, and of W x the two others it
-        // sees what W has along the third: the skew makes up for axes that are not orthonormal.
-        const Four square = 1.0 + 0x1p-48 + motion.skew - s.along_own[k] * s.along_own[k];
-        const OwnReach own{
-            h[k],
-            motion.speed * (h[k1] * absolute(s.along_own[k2]) + h[k2] * absolute(s.along_own[k1])),
-            square};
-        longest = maximum(longest, step_along(boxes.axes[k], own, s, motion, is_long));
-    }
-    if (is_long) {
-        const Four zero = every(0.0, h.x);
-        const Four error = every(kAxisError, h.x);
-        longest = maximum(longest, step_along(motion.axis, {s.span, zero, error}, s, motion, true));
-    }
-    longest = maximum(longest, swapped(longest));
-    return {longest[0], longest[1]};
+std::array<double, 2> box_steps(const LaneMotion& motion, const PlacedBoxes& boxes,
+                                const MovingFrame& frame, double wanted) {
+    const bool is_long = is_long_motion(frame, wanted);
+    std::array<double, 2> steps{};
+    in_registers([&]<std::size_t kBytes>() {
+        using Real = Doubles<kBytes>;
+        const Real longest = longest_step(own_of<Real>(motion, boxes), motion, frame, is_long);
+        steps = {longest[kLaneOfA[0]], longest[kLaneOfA[1]]};
+    });
+    return steps;
 }
 
 } // namespace obb

@@ -24,8 +24,9 @@ constexpr std::uint32_t kTrianglesAPop = 64;
 // About the time in which the boxes of a pair move by their own sizes against each other.
 double ContactQuery::window(const Entry& entry) const {
     const Vec3 wa = pair_.a().spin().velocity(), wb = pair_.b().spin().velocity();
-    const Vec3 velocity = pair_.closing_velocity() + cross(wb, lane(pair_.boxes().center, 2)) -
-                          cross(wa, lane(pair_.boxes().center, 0));
+    const Vec3 velocity = pair_.closing_velocity() +
+                          cross(wb, lane(pair_.boxes().center, kLaneOfB[0])) -
+                          cross(wa, lane(pair_.boxes().center, kLaneOfA[0]));
     const double size_a = MovingPair::size_of(pair_.a(), entry.a),
                  size_b = MovingPair::size_of(pair_.b(), entry.b);
     const double turning = size_a * pair_.a().spin().speed() + size_b * pair_.b().spin().speed();
@@ -129,7 +130,8 @@ void ContactQuery::meet_boxes(const Entry& entry) {
         return;
     }
     // A step too short for a double to tell: the boxes all but meet, or turn too fast.
-    const Vec3 ha = lane(pair_.boxes().half_extents, 0), hb = lane(pair_.boxes().half_extents, 2);
+    const Vec3 ha = lane(pair_.boxes().half_extents, kLaneOfA[0]);
+    const Vec3 hb = lane(pair_.boxes().half_extents, kLaneOfB[0]);
     const double sizes = std::hypot(ha.x, ha.y, ha.z) + std::hypot(hb.x, hb.y, hb.z);
     const double margin = kAllButMeeting * sizes;
     if (step_of_boxes(entry, margin) > 0) {

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <limits>
-#include <memory>
 
 namespace obb {
 
@@ -93,10 +92,10 @@ class MovingPair {
     }
     // Puts the boxes of two parts of each body where they are at the present time.
     void place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b);
-    [[nodiscard]] const BasicObb<Four>& boxes() const { return *boxes_; }
+    [[nodiscard]] const PlacedBoxes& boxes() const { return boxes_; }
     // How long the placed boxes stay apart, pair by pair, as box_steps() says.
     [[nodiscard]] std::array<double, 2> steps(const MovingFrame& frame, double wanted) const {
-        return box_steps(*motion_, *boxes_, frame, wanted);
+        return box_steps(motion_, boxes_, frame, wanted);
     }
 
     // Triangles at a time; this sets the time.
@@ -113,12 +112,11 @@ class MovingPair {
     void set_motion();
     void turn_to(double time);
     void place_triangles(const MovingTree& body, const std::array<NodeRef, 2>& parts,
-                         std::size_t lane);
+                         const std::array<std::size_t, 2>& lanes);
 
     MovingTree a_, b_;
-    // On the heap: vectors this wide want more alignment than the objects that hold queries have.
-    std::unique_ptr<LaneMotion> motion_ = std::make_unique<LaneMotion>();
-    std::unique_ptr<BasicObb<Four>> boxes_ = std::make_unique<BasicObb<Four>>(); // of the parts
+    LaneMotion motion_{};
+    PlacedBoxes boxes_{}; // of the parts
     int length_exponent_ = 0, time_exponent_ = 0;
     double duration_ = 0, clearance_ = 0;
     Vec3 pivot_between_{0, 0, 0}, closing_velocity_{0, 0, 0};

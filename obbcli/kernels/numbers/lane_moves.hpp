@@ -83,6 +83,24 @@ OBB_INLINE Lanes<Number, kCount, kBytes> shuffled(const Lanes<Number, kCount, kB
     return mingled<order...>(a, a);
 }
 
+// Every 16 bytes change places with their neighbours: the first with the second, and so on.
+template <typename Number, std::size_t kCount, std::size_t kBytes>
+OBB_INLINE Lanes<Number, kCount, kBytes> exchanged(const Lanes<Number, kCount, kBytes>& a) {
+    using Result = Lanes<Number, kCount, kBytes>;
+    Result result;
+    [&]<int... lane>(std::integer_sequence<int, lane...>) __attribute__((always_inline)) {
+        for (std::size_t r = 0; r < Result::kRegisters; ++r) {
+            if constexpr (kBytes == 16) {
+                result.parts[r] = a.parts[r ^ 1U];
+            } else {
+                constexpr int kHalf = static_cast<int>(Result::kInRegister / 2);
+                result.parts[r] = detail::taken<(lane ^ kHalf)...>(a.parts[r], a.parts[r]);
+            }
+        }
+    }(std::make_integer_sequence<int, static_cast<int>(Result::kInRegister)>{});
+    return result;
+}
+
 // Every 16 bytes from a place of their own: place(k) for the k-th.
 template <typename Number, std::size_t kCount, std::size_t kBytes, typename Place>
 OBB_INLINE Lanes<Number, kCount, kBytes> loaded(const Place& place) {
@@ -100,11 +118,12 @@ OBB_INLINE Lanes<Number, kCount, kBytes> loaded(const Place& place) {
     return result;
 }
 
-// Four numbers from each of eight places: the first of all of them, the second of all, and so on.
-template <std::size_t kBytes, typename Place>
-OBB_INLINE std::array<Floats<kBytes>, 4> gathered_fours(const Place& place) {
+// Four numbers from each of eight places, or of four: the first of all of them, the second of all,
+// and so on.
+template <std::size_t kBytes, std::size_t kCount = 8, typename Place>
+OBB_INLINE std::array<Lanes<float, kCount, kBytes>, 4> gathered_fours(const Place& place) {
     const auto row = [&](std::size_t k) __attribute__((always_inline)) {
-        return loaded<float, 8, kBytes>(
+        return loaded<float, kCount, kBytes>(
             [&](std::size_t g) __attribute__((always_inline)) { return place(k + 4 * g); });
     };
     const auto row0 = row(0), row1 = row(1), row2 = row(2), row3 = row(3);
@@ -124,6 +143,25 @@ OBB_INLINE void gather_pairs(const Place& place, Doubles<kBytes>& first, Doubles
     const auto row0 = row(0), row1 = row(1);
     first = mingled<0, 2>(row0, row1);
     second = mingled<1, 3>(row0, row1);
+}
+
+// The same numbers as doubles.
+template <std::size_t kBytes>
+OBB_INLINE Doubles<kBytes> widened(const Lanes<float, 4, 16>& a) {
+    using Wide = typename RegisterOf<double, kBytes>::Type;
+    Doubles<kBytes> result;
+    if constexpr (kBytes == 32) {
+        result.parts[0] = Wide{double{a[0]}, double{a[1]}, double{a[2]}, double{a[3]}};
+    } else {
+        result.parts[0] = Wide{double{a[0]}, double{a[1]}};
+        result.parts[1] = Wide{double{a[2]}, double{a[3]}};
+    }
+    return result;
+}
+// Every 16 bytes hold a and b.
+template <typename Real>
+OBB_INLINE Real alternating(double a, double b) {
+    return mingled<0, 2>(Real(a), Real(b));
 }
 
 // To the nearest floats, two lanes of `a` before two of `b`.

@@ -2,6 +2,7 @@
 // make do where it has none for four.
 #pragma once
 
+#include "numbers/one_lane.hpp"
 #include "numbers/vec.hpp"
 
 #include <cmath>
@@ -54,7 +55,6 @@ inline constexpr std::size_t kAlignment<Four> = sizeof(Four);
 [[nodiscard]] inline Four square_root(Four a) {
     return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
-[[nodiscard]] inline double select(bool mask, double a, double b) { return mask ? a : b; }
 [[nodiscard]] inline Pack select(PackMask mask, Pack a, Pack b) { return mask ? a : b; }
 [[nodiscard]] inline Four select(FourMask mask, Four a, Four b) { return mask ? a : b; }
 // Lane k of the result is lane Order[k] of `a`. Each compiler has a name of its own for it.

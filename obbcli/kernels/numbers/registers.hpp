@@ -210,6 +210,17 @@ struct Lanes {
         }
         return result;
     }
+    // a with its sign flipped where b is negative.
+    friend OBB_INLINE Lanes flipped(const Lanes& a, const Lanes& b) {
+        Lanes result;
+        for (std::size_t r = 0; r < kRegisters; ++r) {
+            const RegisterMask sign =
+                reinterpret_cast<RegisterMask>(b.parts[r]) & ~(RegisterMask{} + kAllButSign);
+            result.parts[r] =
+                reinterpret_cast<Register>(reinterpret_cast<RegisterMask>(a.parts[r]) ^ sign);
+        }
+        return result;
+    }
     friend OBB_INLINE Lanes root_of(const Lanes& a) {
         Lanes result;
         for (std::size_t r = 0; r < kRegisters; ++r) {

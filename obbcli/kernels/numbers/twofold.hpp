@@ -2,6 +2,7 @@
 #pragma once
 
 #include "numbers/double_double.hpp"
+#include "numbers/one_lane.hpp"
 
 #include <cmath>
 
@@ -63,7 +64,6 @@ struct Twofold {
     const Twofold rest = a - Twofold(two_product(x, x));
     return Twofold(x) + Twofold(rest.high / (2 * x));
 }
-[[nodiscard]] inline double root_of(double a) { return std::sqrt(a); }
 
 // The nearest double.
 [[nodiscard]] inline double rounded(const Twofold& a) { return a.high; }
