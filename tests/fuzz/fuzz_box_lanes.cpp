@@ -198,7 +198,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t k = 0; k < 8; ++k) {
         nodes[k] = &boxes[k];
     }
-    obb::EightFrame frame(a, b, common.bound);
+    obb::EightFrame frame;
+    frame.set(a, b, common.bound);
     check(frame, nodes, a, b);
     constexpr std::array<float, 3> kBad{std::numeric_limits<float>::quiet_NaN(),
                                         std::numeric_limits<float>::infinity(),

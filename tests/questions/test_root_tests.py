@@ -122,6 +122,28 @@ def test_corners_on_faces_graze(gap):
         Cube(extents).check(poses, is_far=gap > 2**-37)
 
 
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize("exponent", [0, -280, 280])
+@pytest.mark.parametrize("is_skew", [False, True])
+def test_edges_that_graze_are_apart_only_where_surfaces_are(gap, exponent, is_skew):
+    rng = np.random.default_rng([exponent + 300, GAPS.index(gap), 2])
+    diagonal = np.array([1, 1, 0]) / np.sqrt(2)
+    for _ in range(6):
+        extents = extents_of(rng)
+        middle = extents * (1, 1, 0)  # of the edge along z, which looks along the diagonal
+        whole = turned(rng, is_skew=is_skew)
+        # The second cube's edge looks back and is turned about the diagonal: only the product of
+        # both edges parts the cubes.
+        angle = rng.uniform(0.4, 2.7)
+        x, y = np.outer(diagonal, diagonal), np.cross(np.eye(3), diagonal)
+        about = np.cos(angle) * np.eye(3) + (1 - np.cos(angle)) * x - np.sin(angle) * y
+        back = about @ np.diag([-1.0, -1.0, 1.0])
+        place = middle + gap * diagonal - back @ middle
+        poses = Pose(whole), Pose(whole @ back, np.ldexp(whole @ place, exponent))
+
+        Cube(extents, exponent).check(poses, is_far=gap > (2**-25 if is_skew else 2**-37))
+
+
 def test_turned_boxes_are_apart_only_where_surfaces_are():
     rng = np.random.default_rng(5)
     apart = 0

@@ -33,7 +33,7 @@ LIMITS: dict[str, Counts] = {
     "collide gap_1e-1": (31, 46, 0, 11),
     "collide gap_1e-3": (176, 402, 170, 120),
     "collide touching": (151, 318, 44, 84),
-    "collide deep": (63, 61, 9, 17),
+    "collide deep": (57, 52, 9, 15),
     "collide nested": (1056, 4842, 0, 1213),
     "collide sheets": (3419, 15373, 0, 3869),
     "triangle_pairs penetrating": (281, 789, 575, 263),

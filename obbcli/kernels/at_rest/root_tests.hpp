@@ -6,6 +6,7 @@
 #include "tree/tree.hpp"
 
 #include <array>
+#include <cstdint>
 #include <limits>
 
 namespace obb {
@@ -20,12 +21,18 @@ struct RootBox {
     // apply: a body of one triangle, scales near the ends of the range of double, poses far from
     // rigid, boxes of a damaged tree that are no numbers.
     double size = std::numeric_limits<double>::infinity();
+    double error = std::numeric_limits<double>::infinity(); // by which a projection may be longer
 };
 
 [[nodiscard]] RootBox root_box(const TreeView& tree, const Pose& pose);
 
-// Whether the posed vertices' hulls are proven apart, by spheres or by the boxes' six face axes.
-// False says nothing.
-[[nodiscard]] bool are_apart(const RootBox& a, const RootBox& b);
+enum class RootVerdict : std::uint8_t {
+    kUnknown, // these tests do not apply
+    kApart,   // the posed vertices' hulls are proven apart
+    kMayMeet, // no axis of the boxes parts them
+};
+
+// Whether spheres, or the fifteen axes of two boxes, part the bodies.
+[[nodiscard]] RootVerdict compare_roots(const RootBox& a, const RootBox& b);
 
 } // namespace obb

@@ -15,7 +15,7 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
     const QueryFrame frame = set_common_frame(a_, b_);
     bound_ = frame.bound;
     exponent_ = frame.exponent;
-    frame_ = EightFrame(a_, b_, bound_);
+    frame_.set(a_, b_, bound_);
     waiting_nodes_.fill(&kNoBox);
     begin();
 }
@@ -23,6 +23,13 @@ StaticQuery::StaticQuery(const TreeView& a, const Pose& pose_a, const TreeView& 
 void StaticQuery::stop() {
     stack_.clear();
     waiting_count_ = 0;
+    forget_ahead();
+}
+
+void StaticQuery::forget_ahead() {
+    for (Ahead& ahead : ahead_) {
+        ahead.place = kNowhere;
+    }
 }
 
 // Each surface touches its box, so two boxes that meet hold surfaces no further apart than their
@@ -58,28 +65,40 @@ double StaticQuery::distance_bound(const Pair& pair) const {
     return std::fmin(std::nextafter(bound, std::numeric_limits<double>::infinity()), largest);
 }
 
+// From the lowest up.
+std::vector<StaticQuery::Pair> StaticQuery::take_stack() {
+    std::vector<Pair> pairs;
+    pairs.reserve(stack_.size());
+    for (std::size_t k = 0; k < stack_.size(); ++k) {
+        pairs.push_back(stack_[k]);
+    }
+    stack_.clear();
+    return pairs;
+}
+
 std::vector<StaticQuery> StaticQuery::divide(std::size_t count) {
     // What waits belongs to one part alone.
     if (waiting_count_ > 0) {
         open_waiting();
     }
-    std::vector<Pair> wide = std::move(stack_);
+    forget_ahead();
+    std::vector<Pair> wide = take_stack();
     while (!wide.empty() && wide.size() < count) {
         std::vector<Pair> next;
         for (const Pair& pair : wide) {
-            stack_.assign(1, pair);
+            stack_.push_back(pair);
             pop_alone();
-            next.insert(next.end(), stack_.begin(), stack_.end());
+            const std::vector<Pair> left = take_stack();
+            next.insert(next.end(), left.begin(), left.end());
         }
         wide = std::move(next);
     }
-    stack_.clear();
     StaticQuery empty = *this;
     empty.pairs_.clear();
     empty.counts_ = {};
     std::vector<StaticQuery> parts(wide.size(), empty);
     for (std::size_t k = 0; k < wide.size(); ++k) {
-        parts[k].stack_.assign(1, wide[k]);
+        parts[k].stack_.push_back(wide[k]);
     }
     return parts;
 }

@@ -1,6 +1,7 @@
 // Do two posed trees touch, and which triangles? Dual descent; Eberly 2008 §7.1.
 #pragma once
 
+#include "at_rest/pair_stack.hpp"
 #include "descent/box_lanes.hpp"
 #include "descent/limits.hpp"
 #include "descent/posed_tree.hpp"
@@ -21,6 +22,8 @@ struct StaticQueryOptions {
     BoxLimits boxes{};
     // Stop after so many pairs.
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
+    // The roots' boxes were tested, and no axis parts them.
+    bool roots_may_meet = false;
 };
 
 struct TrianglePair {
@@ -59,9 +62,7 @@ class StaticQuery {
     [[nodiscard]] const WalkCounts& counts() const { return counts_; }
 
   private:
-    struct Pair {
-        NodeRef a, b;
-    };
+    using Pair = NodePair;
     // A pair about to be opened: into the children of either node, or the node as it is.
     struct Opening {
         Pair pair;
@@ -69,20 +70,39 @@ class StaticQuery {
         unsigned lanes;              // the pairs of parts there are, a bit each by kOfA and kOfB
         unsigned triangle_lanes;     // those of them with a triangle
     };
+    static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+    static constexpr std::size_t kMostAhead = 8;
+    // A pair that was judged while it lay on the stack.
+    struct Ahead {
+        std::size_t place = kNowhere; // how many pairs lie under it
+        Opening opening;
+        std::array<const Node*, 4> nodes;
+        EightVerdicts verdicts; // in the last four lanes
+    };
+    // So many pairs of triangles are sooner tested than the boxes between them.
+    static constexpr std::uint32_t kCrowd = 16;
 
     void begin();
     void pop();
     void pop_alone();
     void visit(const Pair& pair);
+    [[nodiscard]] bool visit_boxes(const Pair& pair);
     [[nodiscard]] const Node* box_to_open(const PosedTree& body, const NodeRef& ref,
                                           std::uint32_t max_depth) const;
     void wait_to_open(const Pair& pair, const Node* node_a, const Node* node_b);
     void open_waiting();
+    void look_ahead();
+    void open_first(std::size_t place);
+    void open_ahead(Ahead& ahead);
+    [[nodiscard]] Ahead& ahead_of(std::size_t place) { return ahead_[place % kMostAhead]; }
+    void forget_ahead();
+    void open(const Opening& opening, const Node* const* nodes, EightVerdicts& verdicts,
+              std::size_t first_lane);
     [[nodiscard]] static Pair part_of(const Opening& opening, std::size_t lane);
     [[nodiscard]] unsigned meeting_in_doubles(const Opening& opening, unsigned lanes) const;
     [[nodiscard]] unsigned meeting_triangles(const Opening& opening, float* nearness);
-    void push(const Pair& pair);
-    void push_meeting(const Opening& opening, unsigned meeting, const float* nearness);
+    void push_meeting(const Opening& opening, const Node* const* nodes, unsigned meeting,
+                      const float* nearness);
     void push_in_order(const Opening& opening, unsigned meeting);
     [[nodiscard]] bool may_triangle_meet(const NodeRef& ref_a, const NodeRef& ref_b,
                                          float& nearness) const;
@@ -90,9 +110,14 @@ class StaticQuery {
     bool keep_if_intersecting(const NodeRef& ref_a, const NodeRef& ref_b,
                               const TriangleVerdict& verdict);
     void meet(const Pair& pair);
-    [[nodiscard]] bool is_crowd(const Pair& pair) const;
+    // Not where boxes may stand for triangles.
+    [[nodiscard]] bool is_crowd(const Pair& pair) const {
+        return !is_coarse_ &&
+               std::uint64_t{pair.a.triangle_count()} * pair.b.triangle_count() <= kCrowd;
+    }
     void meet_all(const Pair& pair);
     [[nodiscard]] double distance_bound(const Pair& pair) const;
+    [[nodiscard]] std::vector<Pair> take_stack();
     void stop();
     void finish();
 
@@ -102,11 +127,12 @@ class StaticQuery {
     RoundingBound bound_{};
     int exponent_ = 0;
     EightFrame frame_;
-    std::vector<Pair> stack_;
+    PairStack stack_;
     // Popped, and opened with the next one: there are none while the stack is empty.
     std::array<Opening, 2> waiting_;
     EightNodes waiting_nodes_;
     std::size_t waiting_count_ = 0;
+    std::array<Ahead, kMostAhead> ahead_; // by the place, modulo their number
     std::vector<TrianglePair> pairs_;
     bool is_by_boxes_ = false;
     bool is_finished_ = false;

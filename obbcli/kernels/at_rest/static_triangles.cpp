@@ -9,13 +9,6 @@
 
 namespace obb {
 
-namespace {
-
-// So many pairs of triangles are sooner tested than the boxes between them.
-constexpr std::uint32_t kCrowd = 16;
-
-} // namespace
-
 // Whether that was the last pair wanted.
 bool StaticQuery::keep_if_intersecting(const NodeRef& ref_a, const NodeRef& ref_b,
                                        const TriangleVerdict& verdict) {
@@ -41,12 +34,6 @@ void StaticQuery::meet(const Pair& pair) {
     ++counts_.triangle_tests;
     const TriangleVerdict verdict = test_triangles(a_.triangle(pair.a), b_.triangle(pair.b));
     (void)keep_if_intersecting(pair.a, pair.b, verdict);
-}
-
-// Not where boxes may stand for triangles.
-bool StaticQuery::is_crowd(const Pair& pair) const {
-    return !is_coarse_ &&
-           std::uint64_t{pair.a.triangle_count()} * pair.b.triangle_count() <= kCrowd;
 }
 
 // Tests all triangles under one node against all under the other: those under the larger in lanes.

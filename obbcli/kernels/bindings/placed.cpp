@@ -241,6 +241,8 @@ void bind_placed(nb::module_& m) {
         nb::arg("pose"), nb::arg("motion"));
     m.def(
         "roots_are_apart",
-        [](const Placed& a, const Placed& b) { return obb::are_apart(a.root, b.root); },
+        [](const Placed& a, const Placed& b) {
+            return obb::compare_roots(a.root, b.root) == obb::RootVerdict::kApart;
+        },
         nb::arg("a"), nb::arg("b"));
 }

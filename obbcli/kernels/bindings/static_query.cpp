@@ -18,8 +18,7 @@ using namespace nb::literals;
 
 namespace {
 
-Owned<std::int64_t, -1, 2> take_pairs(obb::StaticQuery& query) {
-    std::vector<obb::TrianglePair> pairs = query.take_pairs();
+Owned<std::int64_t, -1, 2> rows_of(std::vector<obb::TrianglePair>&& pairs) {
     const std::size_t count = pairs.size();
     return owned<Owned<std::int64_t, -1, 2>>(std::move(pairs), {count, 2});
 }
@@ -119,9 +118,14 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
     // second on a busy machine took 0.1 ms more at best, and often a slice of the scheduler's.
     constexpr std::uint64_t kPopsAlone = kPopsASlice;
     constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+    const obb::RootVerdict roots = obb::compare_roots(a.root, b.root);
+    if (roots == obb::RootVerdict::kApart) {
+        return {rows_of({}), {1, 0, 0, 0, 0}};
+    }
     obb::StaticQueryOptions options;
     options.all_pairs = true;
     options.limit = limit;
+    options.roots_may_meet = roots == obb::RootVerdict::kMayMeet;
     obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options);
     const std::uint64_t brief = brief_pops(*a.tree, *b.tree);
     try {
@@ -133,7 +137,7 @@ triangle_pairs(const Placed& a, const Placed& b, std::uint64_t limit, unsigned t
     } catch (const TooManyPairs&) {
         return {std::nullopt, counts_of(query.counts())};
     }
-    return {take_pairs(query), counts_of(query.counts())};
+    return {rows_of(query.take_pairs()), counts_of(query.counts())};
 }
 
 } // namespace
@@ -142,9 +146,12 @@ AtRestFound ask_at_rest(const Placed& a, const Placed& b, const obb::Limits& lim
     AtRestFound found;
     obb::WalkCounts counts;
     counts.box_tests = 1; // that of the roots
-    found.is_complete = obb::are_apart(a.root, b.root);
+    const obb::RootVerdict roots = obb::compare_roots(a.root, b.root);
+    found.is_complete = roots == obb::RootVerdict::kApart;
     if (!found.is_complete) {
-        obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options_of(limits));
+        obb::StaticQueryOptions options = options_of(limits);
+        options.roots_may_meet = roots == obb::RootVerdict::kMayMeet;
+        obb::StaticQuery query(a.tree->view, a.pose, b.tree->view, b.pose, options);
         found.is_complete = run(query, brief_pops(*a.tree, *b.tree), limits, found.seconds);
         found.is_by_boxes = query.is_by_boxes();
         found.error_bound = query.error_bound();

@@ -138,7 +138,7 @@ OBB_INLINE void judge(const EightFrame& frame, const EightNodes& nodes, EightVer
 
 } // namespace
 
-EightFrame::EightFrame(const PosedTree& a, const PosedTree& b, const RoundingBound& bound) {
+void EightFrame::set(const PosedTree& a, const PosedTree& b, const RoundingBound& bound) {
     scale_a.fill(a.node_scale());
     // Rounded up, as doubles are rounded to floats by at most 2^-24 of them.
     constexpr double kUp = 1 + 0x1p-22;

@@ -22,9 +22,8 @@ struct EightFrame {
     alignas(32) std::array<std::array<std::array<double, 4>, 4>, 3> rows_b;
     alignas(32) std::array<float, 8> relative, absolute; // see box_lanes.cpp
 
-    EightFrame() = default;
     // Of bodies in their common frame. A's frame has to be its own.
-    EightFrame(const PosedTree& a, const PosedTree& b, const RoundingBound& bound);
+    void set(const PosedTree& a, const PosedTree& b, const RoundingBound& bound);
 };
 
 // Two boxes of A and two of B, then two of A and two of B of another pair. None is a null pointer.

@@ -22,6 +22,7 @@ class PosedTree {
 
     [[nodiscard]] const TreeView& tree() const { return *tree_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
+    [[nodiscard]] bool is_posed() const { return is_posed_; } // other than as loaded
     [[nodiscard]] const Mat3& matrix() const { return matrix_; }
     [[nodiscard]] Vec3 offset() const { return offset_; }
     // The nodes' unit in the frame's.

@@ -15,7 +15,7 @@ constexpr double kTiny = 0x1p-900;
 
 // Coordinates of a posed mesh stay below three times its largest coordinate plus the translation.
 void require_range(const PosedTree& body) {
-    if (body.pose().is_identity()) {
+    if (!body.is_posed()) {
         return;
     }
     const double largest = norm_inf(body.pose().translation);
@@ -27,6 +27,21 @@ void require_range(const PosedTree& body) {
 // |Q v| >= (1 - 2 skew) |v| for a skew of at most 1e-9, and the boxes' own axes, projected on and
 // summed over, are longer than 1 by at most 2^-46.
 double shrink_of(double skew) { return 1 - 0x1p-44 - 8 * skew; }
+
+// What takes B's scaled coordinates to A's own. Of an A that stands as loaded that is B's pose; the
+// general way would give the same numbers.
+struct Between {
+    Mat3 matrix;
+    Vec3 offset;
+};
+Between between(const PosedTree& a, const PosedTree& b, int exponent) {
+    const Vec3 place_b = scaled(b.pose().translation, -exponent);
+    if (!a.is_posed()) {
+        return {b.pose().rotation, place_b};
+    }
+    const Mat3 to_a = inverse(a.pose().rotation);
+    return {to_a * b.pose().rotation, to_a * (place_b - scaled(a.pose().translation, -exponent))};
+}
 
 } // namespace
 
@@ -44,18 +59,15 @@ QueryFrame set_common_frame(PosedTree& a, PosedTree& b) {
             exponent = std::max(exponent, exponent_of(shift));
         }
     }
-    const double skew_a = skew_of(pa.rotation);
+    const double skew_a = a.is_posed() ? skew_of(pa.rotation) : 0.0;
     a.set_frame(Mat3::identity(), {0, 0, 0}, exponent);
     if (pa == pb) {
         // A common pose moves no box against the other. It still rounds the triangles.
         b.set_frame(Mat3::identity(), {0, 0, 0}, exponent);
-        const double rounding = pa.is_identity() ? 0.0 : 0x1p-46 * 8.0;
+        const double rounding = !a.is_posed() ? 0.0 : 0x1p-46 * 8.0;
         return {exponent, {64 * kUnitRoundoff, rounding + kTiny}, shrink_of(skew_a)};
     }
-    const Mat3 to_a = inverse(pa.rotation);
-    const Mat3 matrix = to_a * pb.rotation;
-    const Vec3 offset =
-        to_a * (scaled(pb.translation, -exponent) - scaled(pa.translation, -exponent));
+    const auto [matrix, offset] = between(a, b, exponent);
     b.set_frame(matrix, offset, exponent);
     const double skew = skew_of(matrix);
     // No coordinate or translation exceeds 1 here: 2^-46 is 128 units of roundoff, 8 the sum over

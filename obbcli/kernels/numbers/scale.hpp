@@ -25,8 +25,13 @@ namespace obb {
     return second * (first * v);
 }
 
-// The least k with value < 2^k; 0 for zero.
+// The least k with |value| < 2^k; 0 for zero. Without a call where the value is a normal number.
 [[nodiscard]] inline int exponent_of(double value) {
+    constexpr std::uint64_t kBias = 1022, kMost = 0x7ff;
+    const std::uint64_t biased = std::bit_cast<std::uint64_t>(value) >> 52U & kMost;
+    if (biased != 0 && biased != kMost) {
+        return static_cast<int>(biased) - static_cast<int>(kBias);
+    }
     int exponent = 0;
     (void)std::frexp(value, &exponent);
     return exponent;

@@ -107,7 +107,7 @@ struct Mat3 {
 [[nodiscard]] inline double skew_of(const Mat3& m) {
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
+        for (std::size_t j = 0; j <= i; ++j) {
             const double wanted = i == j ? 1 : 0;
             const double entry = std::fabs(dot(m.column(i), m.column(j)) - wanted);
             largest = largest < entry ? entry : largest;

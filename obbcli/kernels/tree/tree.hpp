@@ -107,8 +107,13 @@ struct TreeView {
         if (node.right <= ref.slot) {
             throw TreeError("a link leads backwards");
         }
-        return {{{ref.begin, node.split, ref.slot + 1, ref.depth + 1},
-                 {node.split, ref.end, node.right, ref.depth + 1}}};
+        return {child(ref, node, 0), child(ref, node, 1)};
+    }
+
+    // The same of links that were looked at: the first child, or the second.
+    [[nodiscard]] static NodeRef child(const NodeRef& ref, const Node& node, std::size_t k) {
+        return k == 0 ? NodeRef{ref.begin, node.split, ref.slot + 1, ref.depth + 1}
+                      : NodeRef{node.split, ref.end, node.right, ref.depth + 1};
     }
 
     // One triangle of a leaf that holds several.
