@@ -39,4 +39,5 @@ NB_MODULE(_core, m) {
     bind_distance(m);
     bind_swept_pairs(m);
     bind_overlap_volume(m);
+    bind_overlap_regions(m);
 }

@@ -161,6 +161,7 @@ void bind_contact_query(nb::module_& m);
 void bind_file_tree(nb::module_& m);
 void bind_hull(nb::module_& m);
 void bind_limits(nb::module_& m);
+void bind_overlap_regions(nb::module_& m);
 void bind_overlap_volume(nb::module_& m);
 void bind_placed(nb::module_& m);
 void bind_pose(nb::module_& m);

@@ -33,11 +33,17 @@ ThicknessQuery::ThicknessQuery(const TreeView& a, const Pose& pose_a, const Tree
     }
     const std::optional<CellBox> box = common_box(surfaces_[0], surfaces_[1]);
     if (box) {
-        frames_.push_back(box->axes);
         // A ball in both solids fits between the planes of the box.
         const Vec3 width = box->width();
         const double bound = 0.5 * std::min({width.x, width.y, width.z}) + kCellPad;
-        queue_.push({box->low, box->high, bound, 0, 0, 0, false, 0, {}}, -bound, order_++);
+        begin(options.within.empty() ? std::vector<CellBox>{*box} : options.within, bound);
+    }
+}
+
+void ThicknessQuery::begin(const std::vector<CellBox>& boxes, double bound) {
+    frames_.push_back(boxes.front().axes);
+    for (const CellBox& box : boxes) {
+        queue_.push({box.low, box.high, bound, 0, 0, 0, false, 0, {}}, -bound, order_++);
     }
 }
 

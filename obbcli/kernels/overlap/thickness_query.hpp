@@ -23,6 +23,9 @@ struct ThicknessOptions {
     std::optional<double> deeper_than; // only whether the thickness exceeds this, in mesh units
     double floor = 0;                  // a bracket of this width will do, in mesh units
     std::uint64_t max_cells = 200'000;
+    // Where centres of balls are looked for, in the frame of both solids: all with the same axes.
+    // None: wherever both can overlap.
+    std::vector<CellBox> within{};
 };
 
 // A ball that lies in both solids.
@@ -108,6 +111,7 @@ class ThicknessQuery {
         Vec3 normal;
     };
 
+    void begin(const std::vector<CellBox>& boxes, double bound);
     [[nodiscard]] double target() const;
     void visit(const Cell& cell);
     void look_at(const Cell& cell);
