@@ -66,7 +66,8 @@ void NearestSearch::descend(const NodeRef& from, double enough) {
             open_up(open.ref);
         }
     }
-    best_.low = stack_.empty() ? smaller(low_, best_.high) : 0;
+    const bool is_found = stack_.empty() && best_.high < HUGE_VAL; // not where all is NaN
+    best_.low = is_found ? smaller(low_, best_.high) : 0;
 }
 
 void NearestSearch::open_up(const NodeRef& ref) {
@@ -91,7 +92,7 @@ void NearestSearch::open_up(const NodeRef& ref) {
     }
 }
 
-// A box that is a NaN anywhere has the least distance 0: larger() takes the second of the two.
+// A box that is a NaN anywhere has no least distance, which is never far enough.
 void NearestSearch::push(const NodeRef& ref) {
     double low = 0;
     if (!ref.is_triangle()) {

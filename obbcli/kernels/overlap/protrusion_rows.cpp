@@ -127,7 +127,8 @@ bool ProtrusionQuery::look_inside(const Vec3& world, const Vec3& point, double c
     const Winding winding = windings_.find(world);
     double radius = 0;
     for (const Vec3& corner : corners_) {
-        radius = larger(radius, norm(corner - point));
+        const double its = norm(corner - point);
+        radius = its <= radius ? radius : its; // a NaN stays
     }
     if (clear > radius + 2 * kPieceError) {
         cell_.is_inside = winding.is_inside();
@@ -155,6 +156,9 @@ void ProtrusionQuery::try_point(const Vec3& world, const Vec3& asked, const Poin
 void ProtrusionQuery::try_surface(const Vec3& point) {
     constexpr double kRoughly = 0.25;
     const PointDistance foot = nearest_a_.find_under(cell_.place.ref, point, kRoughly);
+    if (!(foot.high < HUGE_VAL)) {
+        return; // the box of a damaged tree is no number
+    }
     const Vec3 world = frame_.to_world(foot.foot);
     const PointDistance near = nearest_.find(frame_.to_frame(world), slack_, hints_, best_.depth);
     ++points_;
