@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from obbcli.questions.overlap.overlap import overlap
     from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
     from obbcli.scene import Scene, SceneBody, SceneContact
-    from obbcli.study.stability.battery import stability
     from obbcli.study.stability.rows import Stability
+    from obbcli.study.stability.stability import stability
     from obbcli.study.tradeoff.tradeoff import tradeoff
     from obbcli.study.tradeoff.trials import Tradeoff
     from obbcli.sweeps.sweep import sweep
@@ -84,7 +84,7 @@ _HOMES = {
     "load_parts": "motion.assembly",
     "notes": "questions.notes",
     "overlap": "questions.overlap.overlap",
-    "stability": "study.stability.battery",
+    "stability": "study.stability.stability",
     "sweep": "sweeps.sweep",
     "tradeoff": "study.tradeoff.tradeoff",
     "triangle_pair_blocks": "questions.triangle_pairs",

@@ -166,3 +166,38 @@ def test_plot_without_matplotlib_says_what_to_install(here, obbtree, monkeypatch
 
     assert ended.code == 2
     assert "pip install matplotlib" in ended.err
+
+
+@pytest.mark.parametrize("ask", ["distance", "overlap"])
+def test_question_at_rest_has_its_own_rows(obbtree, ask):
+    document = obbtree("stability", *APART, "--ask", ask, "--json").json
+
+    result = document["result"]
+    assert result["ask"] == ask
+    assert result["broken_count"] == 0
+    assert result["rows"][0]["bounds"]["distance"][0] <= 0.05
+    assert (result["rows"][0]["relation"] == "clear") == (ask == "overlap")
+    assert (result["rows"][0]["status"], result["rows"][0]["time_bounds"]) == (None, None)
+
+
+def test_question_at_rest_is_told_to_people(obbtree):
+    lines = obbtree("stability", *APART, "--ask", "overlap").out.splitlines()
+
+    told = {line.split()[0]: line.split()[1:] for line in lines if line}
+    assert told["answer"] == ["clear"]
+    assert told["broken"] == ["0"]
+
+
+@pytest.mark.parametrize("words", [("--vel", 1, 0, 0), ("--duration", 2), ("--max-depth", 3)])
+def test_what_says_nothing_at_rest_is_refused(obbtree, words):
+    ended = obbtree("stability", *APART, "--ask", "overlap", *words)
+
+    assert (ended.code, ended.out) == (2, "")
+    assert words[0].removesuffix("s") in ended.err.replace("_", "-") or "max" in ended.err
+
+
+@pytest.mark.parametrize(("words", "code"), [((), 0), (("--translate", 0, 0, 0.3), 1)])
+def test_exit_code_of_a_question_at_rest_is_its_own(obbtree, words, code):
+    asked = ("--ask", "distance", "--exit-code", "--quiet")
+
+    assert obbtree("stability", *APART, *words, *asked).code == code

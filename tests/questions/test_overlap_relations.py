@@ -56,6 +56,16 @@ def test_gap_is_judged_by_wanted_distance_and_band(clearance, touch, relation) -
     assert found.relation == relation
 
 
+def test_swapped_bodies_apart_have_the_same_bits() -> None:
+    a, b = Mesh(*cube(1.0)), Body(Mesh(*octahedron()), TURN)
+
+    found, swapped = obbcli.overlap(a, b), obbcli.overlap(b, a)
+
+    assert found.distance.bounds == swapped.distance.bounds
+    assert found.distance.point_a == swapped.distance.point_b
+    assert found.distance.triangle_b == swapped.distance.triangle_a
+
+
 @pytest.mark.parametrize("turn", [False, True])
 def test_solid_in_a_solid_is_contained(turn) -> None:
     inner = turned_over(octahedron()) if turn else octahedron()

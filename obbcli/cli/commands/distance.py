@@ -9,7 +9,12 @@ import click
 from obbcli.accuracy import ASPECTS
 from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.options.option import Command
-from obbcli.cli.options.two_bodies import about_two, naming_options, with_load_time
+from obbcli.cli.options.two_bodies import (
+    about_two,
+    naming_options,
+    refuse_what_moves,
+    with_load_time,
+)
 from obbcli.cli.output import emit
 
 if TYPE_CHECKING:
@@ -55,10 +60,7 @@ def command(asked: TwoBodyOptions) -> int:
 
 def _refuse_what_says_nothing(motion: MotionOptions, accuracy: AccuracyOptions) -> None:
     """Refuse options that other questions know: to ignore them would make the answer a lie."""
-    for name, value in motion._asdict().items():
-        if value is not None:
-            remedy = "leave it out, or see obbtree first-contact"
-            raise UsageError(_option(name), "moves bodies; the distance is that at t = 0", remedy)
+    refuse_what_moves(motion, "distance")
     for name in accuracy.given():
         if ASPECTS[name].concerns != "all":
             raise UsageError(_option(name), "says nothing about a distance", "leave it out")

@@ -8,7 +8,13 @@ import click
 
 from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
 from obbcli.cli.options.option import Command, option
-from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
+from obbcli.cli.options.two_bodies import (
+    QUESTION,
+    about_two,
+    naming_options,
+    refuse_what_moves,
+    with_load_time,
+)
 from obbcli.cli.options.words import Finite
 from obbcli.cli.output import emit
 
@@ -87,10 +93,7 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
 
 def _refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
     """Refuse options that other questions know: to ignore them would make the answer a lie."""
-    for name, value in asked.motion._asdict().items():
-        if value is not None:
-            remedy = "leave it out, or see obbtree first-contact"
-            raise UsageError(_option(name), "moves bodies; the overlap is that at t = 0", remedy)
+    refuse_what_moves(asked.motion, "overlap")
     for name in asked.accuracy.given():
         if name not in _CONCERNS:
             raise UsageError(_option(name), "says nothing about an overlap", "leave it out")

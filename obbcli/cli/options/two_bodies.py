@@ -212,3 +212,27 @@ def exit_code(result: Record, *, asked: bool) -> int:
     if is_open or (asked and is_separated and result["approximate"]):
         return ExitCode.UNRESOLVED
     return ExitCode.CONTACT if asked and not is_separated else ExitCode.ANSWERED
+
+
+def refuse_what_moves(motion: MotionOptions, ask: str) -> None:
+    """Refuse options of motion where the question is about t = 0: none is ever ignored.
+
+    Raises:
+        UsageError: one is given.
+    """
+    for name, value in motion._asdict().items():
+        if value is not None:
+            fault = f"moves bodies; the {ask} is that at t = 0"
+            remedy = "leave it out, or see obbtree first-contact"
+            raise UsageError("--" + name.replace("_", "-"), fault, remedy)
+
+
+def meeting_of(answer: Record) -> tuple[bool, bool]:
+    """Return whether an answer of a study is open, and whether its bodies meet."""
+    if "status" in answer:
+        return answer["status"] == "unresolved", answer["status"] != "separated"
+    if "relation" in answer:
+        from obbcli.answers.overlap import MEETING
+
+        return answer["relation"] == "unresolved", answer["relation"] in MEETING
+    return not answer["complete"], answer["distance"] == 0

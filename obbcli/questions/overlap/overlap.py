@@ -16,6 +16,7 @@ from obbcli.questions.overlap.asked import Asked, refuse_other_accuracy
 from obbcli.questions.overlap.band import band_of
 from obbcli.questions.overlap.depths import NOTHING
 from obbcli.questions.overlap.meeting import inner_of, share_inside, surfaces_meet
+from obbcli.questions.overlap.order import is_b_first
 from obbcli.questions.overlap.pursuit import Pursuit
 from obbcli.questions.overlap.solids import DEPTHS, Solids
 from obbcli.questions.pair_question import PairQuestion
@@ -188,16 +189,23 @@ class _Question:
         left = Accuracy(
             max_iterations=max(self.pursuit.steps_left, 1), timeout=self.pursuit.seconds_left
         )
-        found, is_complete = measure(self._pair._replace(accuracy=left))
+        is_swapped = is_b_first(self._pair)
+        (a, b), (tree_a, tree_b) = self._pair.bodies, self._pair.trees
+        pair = self._pair._replace(accuracy=left)
+        if is_swapped:
+            pair = pair._replace(bodies=(b, a), trees=(tree_b, tree_a))
+        found, is_complete = measure(pair)
         self.pursuit.spend(found.stats.counts)
         self.pursuit.is_complete &= is_complete
         low, high = found.bounds
+        places = (found.point_a, found.triangle_a), (found.point_b, found.triangle_b)
+        (point_a, row_a), (point_b, row_b) = places[::-1] if is_swapped else places
         gap = Gap(
             bounds=found.bounds,
-            point_a=found.point_a,
-            point_b=found.point_b,
-            triangle_a=found.triangle_a,
-            triangle_b=found.triangle_b,
+            point_a=point_a,
+            point_b=point_b,
+            triangle_a=row_a,
+            triangle_b=row_b,
         )
         band = self.band
         if low > self._wanted:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import get_args
 
+from obbcli.answers.overlap import RelationWord
+from obbcli.report.schema.relations import overlap_fields
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     PART_NAMES,
@@ -29,7 +31,8 @@ from obbcli.report.schema.words import (
     tuple_of,
     word_of,
 )
-from obbcli.study.stability.rows import Outcome, Row
+from obbcli.study.asks import ASKS
+from obbcli.study.stability.rows import Outcome, RestRow, Row
 from obbcli.study.tradeoff.trials import Timing, Trial
 
 _COMMAND = told(TEXT, "the command line that asks with this setting")
@@ -125,17 +128,20 @@ def _trial() -> dict[str, Schema]:
 def stability() -> Schema:
     """Return the schema of `obbtree stability`."""
     result = {
-        "answer": told(
-            record(CONTACT_FIELDS | PART_NAMES, optional=PART_NAMES), "To the question itself."
-        ),
+        "ask": told(word_of(ASKS), "which question; no key where it is first-contact"),
+        "answer": told(studied_answer(), "To the question itself."),
         "extreme_count": told(COUNT, "how many extremes there were to try"),
         "tried_count": told(COUNT, "how many were tried"),
         "broken_count": told(COUNT, "how many did not hold: should be 0"),
         "interrupted": told(FLAG, "whether Ctrl-C ended it"),
         "families": list_of(record(_FAMILY)),
-        "rows": told(list_of(record(_extreme())), "one an extreme"),
+        "rows": told(
+            list_of({"anyOf": [record(_extreme()), record(_rest_extreme())]}), "one an extreme"
+        ),
     }
-    return pair_document("stability", record(result), stats=record({"seconds": SECONDS}))
+    return pair_document(
+        "stability", record(result, optional=("ask",)), stats=record({"seconds": SECONDS})
+    )
 
 
 _FAMILY = {
@@ -170,6 +176,31 @@ def _extreme() -> dict[str, Schema]:
     for name in ("magnitude", "bound"):
         fields[name] = told(fields[name], fields[name].get("description", "") + beyond)
     return fields
+
+
+def _rest_extreme() -> dict[str, Schema]:
+    """Return the fields of an extreme of a question about t = 0."""
+    brackets = table_of(tuple_of(AMOUNT, or_null(AMOUNT)), "by the names of the numbers")
+    more = documented(
+        RestRow,
+        {
+            "difference": or_null(AMOUNT),
+            "relation": or_null(word_of(get_args(RelationWord))),
+            "bounds": brackets,
+        },
+    )
+    return _extreme() | more
+
+
+def studied_answer() -> Schema:
+    """Return the schema of an answer that a study is about."""
+    of_distance = {
+        "distance": told(AMOUNT, "mesh units; the upper one of bounds"),
+        "bounds": told(tuple_of(AMOUNT, AMOUNT), "mesh units; both proven"),
+        "complete": FLAG,
+    }
+    contact = record(CONTACT_FIELDS | PART_NAMES, optional=PART_NAMES)
+    return {"anyOf": [contact, record(of_distance), record(overlap_fields())]}
 
 
 def _answered(*names: str) -> dict[str, Schema]:

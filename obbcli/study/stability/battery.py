@@ -1,4 +1,4 @@
-"""The same question at the extremes, and which answers hold: `stability`.
+"""The same question of a first contact at the extremes, and which answers hold: `Battery`.
 
 An answer is two proofs: no contact before the bracket, contact at its end. Two questions of which
 one's points are within e of the other's contradict each other where contact in the one, at a time
@@ -27,7 +27,7 @@ from obbcli.study.stability.samples import fault_of_samples
 from obbcli.study.stability.world import SLACK, Trees, pair_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 PATIENCE = 200
 LEAST_POPS = 50_000
 # Beyond this a refusal is right: posed coordinates may reach about 1e307.
-_LARGEST = 1e306
+LARGEST = 1e306
 
 
 class Battery:
@@ -117,7 +117,7 @@ class Battery:
             held=False,
             reason="",
         )
-        if not _is_in_range(changed.pair):
+        if not is_in_range(changed.pair):
             return replace(
                 row, outcome="refused", held=True, reason="numbers beyond the range of doubles"
             )
@@ -125,7 +125,7 @@ class Battery:
             answer = self._ask(changed.pair)
             return self._judged(row, changed, answer)
         except ObbError as fault:
-            is_right = changed.pair.largest > _LARGEST
+            is_right = changed.pair.largest > LARGEST
             outcome: Outcome = "refused" if is_right else "broken"
             return replace(row, outcome=outcome, held=is_right, reason=str(fault))
 
@@ -185,48 +185,6 @@ class Battery:
         return False
 
 
-def stability(
-    a: Body | Shape,
-    b: Body | Shape,
-    duration: float | None = None,
-    accuracy: Accuracy | None = None,
-    *,
-    progress: Callable[[int, int, str], None] | None = None,
-) -> Stability:
-    """Ask the same first-contact question at its extremes, and say which answers hold.
-
-    The world is scaled, shifted, turned and hurried, bodies are swapped, triangles are reordered,
-    split, repeated and reversed, time is scaled and cut, bodies are spun and tilted, and digits are
-    taken away. What may change is bounded by what that did to the input.
-
-    Args:
-        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
-        b: the other shape, of the same kinds.
-        duration: s; None: 1 where a body moves, else 0.
-        accuracy: what is asked of every answer; an extreme may take 200 times the queue pops of the
-            question itself, and at least 50,000, as far as `max_iterations` allows. None: the
-            defaults.
-        progress: called before each extreme with how many are done, of how many, and which is next.
-
-    Raises:
-        MotionError: the method is sampled, or a body moves through poses.
-        ObbError: as `first_contact` says.
-
-    Example:
-        >>> from obbcli import Body, Mesh, Motion
-        >>> floor = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-        >>> roof = Mesh([[0, 0, 1], [1, 0, 1], [0, 1, 1]], [[0, 1, 2]])
-        >>> stability(floor, Body(roof, motion=Motion([0, 0, -2]))).broken
-        ()
-    """
-    battery = Battery(a, b, duration, accuracy)
-    while not battery.is_finished:
-        if progress is not None:
-            progress(len(battery.rows), battery.count, battery.next_extreme)
-        battery.advance()
-    return battery.result()
-
-
 def plan(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]:
     """Yield all extremes of a question, family by family.
 
@@ -257,7 +215,7 @@ def _expected(changed: Changed) -> str:
     return "same bits" if changed.is_same else "within bound"
 
 
-def _is_in_range(pair: Pair) -> bool:
+def is_in_range(pair: Pair) -> bool:
     """Return whether all numbers of a question are finite."""
     numbers = [pair.duration]
     for side in pair.sides:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from obbcli.answers.contact import FirstContact
+    from obbcli.answers.distance import Distance
+    from obbcli.answers.overlap import Overlap
     from obbcli.answers.status import Status
 
 Outcome: TypeAlias = Literal["same", "agrees", "within bound", "unresolved", "refused", "broken"]
@@ -49,16 +53,31 @@ class Row:
     reason: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class RestRow(Row):
+    """One extreme of a question about bodies at rest, which has neither status nor times.
+
+    Attributes:
+        relation: what was answered, of an overlap; None where it was refused, and of a distance.
+        bounds: the brackets of the answer by their names, in mesh units of the question itself; hi
+            is None where it is not known.
+        difference: mesh units; the furthest that lower ends are from those of the question itself.
+    """
+
+    relation: str | None = None
+    bounds: Mapping[str, tuple[float, float | None]] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Stability:
     """What became of a question at its extremes.
 
     Attributes:
-        answer: to the question itself.
+        answer: to the question itself: a `FirstContact`, a `Distance` or an `Overlap`.
         rows: one an extreme.
     """
 
-    answer: FirstContact
+    answer: FirstContact | Distance | Overlap
     rows: tuple[Row, ...]
 
     @property
