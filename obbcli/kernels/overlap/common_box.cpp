@@ -29,7 +29,7 @@ struct Interval {
             std::minmax({dot(direction, t[0]), dot(direction, t[1]), dot(direction, t[2])});
         return {low - reach, high + reach};
     }
-    const Obb box = surface.box(surface.tree().node(root));
+    const Obb box = surface.box(root);
     const double middle = dot(direction, box.center);
     for (std::size_t i = 0; i < 3; ++i) {
         reach += box.half_extents[i] * std::fabs(dot(direction, box.axes[i]));
@@ -108,7 +108,7 @@ class NormalSum {
         if (ref.is_triangle()) {
             return may_meet(box_, surface.triangle(ref), kPad);
         }
-        const Obb box = surface.box(surface.tree().node(ref));
+        const Obb box = surface.box(ref);
         const Vec3 d = box.center - box_.center;
         double reach = kPad, size = norm(box_.half_extents);
         for (std::size_t i = 0; i < 3; ++i) {

@@ -62,7 +62,7 @@ std::optional<EscapeRow> EscapeSearch::find(std::span<const Vec3> corners, const
     }
     for (const HeightGap& gap :
          heights_.find(prism_, bottom_ - kRowError, top_ + effort.useful + kRowError, effort.thin,
-                       effort.most)) {
+                       effort.most, top_)) {
         if (gap.to < top_ + kRowError) {
             continue;
         }

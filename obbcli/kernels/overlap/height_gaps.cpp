@@ -104,6 +104,9 @@ HeightSearch::Span HeightSearch::span_of(const Obb& box, const Prism& prism) con
 }
 
 void HeightSearch::take(Span span) {
+    if (span.low < filled_) {
+        span.low = -HUGE_VAL;
+    }
     const auto first = std::lower_bound(taken_.begin(), taken_.end(), span.low,
                                         [](const Span& s, double low) { return s.high < low; });
     auto last = first;
@@ -127,7 +130,7 @@ void HeightSearch::take(Span span) {
 
 // Whether it is of no concern what is at these heights: nothing is, or something is taken to be.
 bool HeightSearch::is_settled(const Span& span) const {
-    if (span.low > span.high) {
+    if (span.low > span.high || span.high <= taken_.front().high) {
         return true;
     }
     const auto above = std::lower_bound(taken_.begin(), taken_.end(), span.low,
@@ -135,51 +138,70 @@ bool HeightSearch::is_settled(const Span& span) const {
     return above != taken_.end() && above->low <= span.low && span.high <= above->high;
 }
 
+// What is highest comes first: with all below it filled, most of the rest is settled then.
 std::span<const HeightGap> HeightSearch::find(const Prism& prism, double floor, double ceiling,
-                                              double thin, std::size_t most) {
-    const TreeView& tree = surface_->tree();
+                                              double thin, std::size_t most, double filled) {
     taken_.clear();
     gaps_.clear();
+    filled_ = filled;
     take({-HUGE_VAL, floor, {0, 1, 0, 0}, 0});
     take({ceiling, HUGE_VAL, {0, 1, 0, 0}, 0});
-    const auto look_at = [&](const NodeRef& ref) {
-        const Triangle t = surface_->triangle(ref);
-        if (const Span span = span_of(t, prism); !is_settled(span)) {
-            take({span.low, span.high, ref, flatness_of(t, prism.up)});
-        }
-    };
-    stack_.assign(1, tree.root());
-    for (std::size_t count = 0; !stack_.empty(); ++count) {
-        const NodeRef ref = stack_.back();
+    stack_.clear();
+    push(surface_->tree().root(), prism);
+    for (std::size_t count = 0; !stack_.empty() && taken_.size() > 1; ++count) {
+        const Open open = stack_.back();
         stack_.pop_back();
-        if (ref.is_triangle()) {
-            look_at(ref);
-            continue;
-        }
-        const Node& node = tree.node(ref);
-        const Span span = span_of(surface_->box(ref), prism);
-        if (is_settled(span)) {
-            continue;
-        }
-        if (span.high - span.low <= thin || count >= most) {
-            tree.prepare_triangles(ref, 1);
-            take({span.low, span.high, {ref.begin, ref.begin + 1, ref.slot, ref.depth}, 1});
-            continue;
-        }
-        tree.prepare(ref);
-        if (!TreeView::is_leaf(node)) {
-            const auto children = tree.children(ref, node);
-            stack_.insert(stack_.end(), {children[1], children[0]});
-            continue;
-        }
-        for (std::uint32_t k = ref.begin; k < ref.end; ++k) {
-            look_at(TreeView::triangle_ref(ref, k));
+        if (!is_settled(open.span)) {
+            open_up(open, prism, thin, count >= most);
         }
     }
     for (std::size_t k = 0; k + 1 < taken_.size(); ++k) {
         gaps_.push_back({taken_[k].high, taken_[k + 1].low, taken_[k].top});
     }
     return gaps_;
+}
+
+void HeightSearch::push(const NodeRef& ref, const Prism& prism) {
+    if (ref.is_triangle()) {
+        look_at(ref, prism);
+        return;
+    }
+    const Span span = span_of(surface_->box(ref), prism);
+    if (!is_settled(span)) {
+        stack_.push_back({ref, span});
+    }
+}
+
+void HeightSearch::look_at(const NodeRef& ref, const Prism& prism) {
+    const Triangle t = surface_->triangle(ref);
+    if (const Span span = span_of(t, prism); !is_settled(span)) {
+        take({span.low, span.high, ref, flatness_of(t, prism.up)});
+    }
+}
+
+void HeightSearch::open_up(const Open& open, const Prism& prism, double thin, bool is_whole) {
+    const TreeView& tree = surface_->tree();
+    const NodeRef& ref = open.ref;
+    if (is_whole || open.span.high - open.span.low <= thin) {
+        tree.prepare_triangles(ref, 1);
+        take({open.span.low, open.span.high, {ref.begin, ref.begin + 1, ref.slot, ref.depth}, 1});
+        return;
+    }
+    const Node& node = tree.node(ref);
+    tree.prepare(ref);
+    if (TreeView::is_leaf(node)) {
+        for (std::uint32_t k = ref.begin; k < ref.end; ++k) {
+            look_at(TreeView::triangle_ref(ref, k), prism);
+        }
+        return;
+    }
+    for (const NodeRef& child : tree.children(ref, node)) {
+        push(child, prism);
+    }
+    if (const std::size_t size = stack_.size();
+        size > 1 && stack_[size - 1].span.high < stack_[size - 2].span.high) {
+        std::swap(stack_[size - 1], stack_[size - 2]);
+    }
 }
 
 NodeRef HeightSearch::under(double height) const {

@@ -31,10 +31,12 @@ class HeightSearch {
     explicit HeightSearch(const SolidSurface& surface) : surface_(&surface) {}
 
     // The gaps between `floor` and `ceiling`, lowest first; heights up to `floor` and from
-    // `ceiling` count as if the surface were there. Boxes at most `thin` high are taken whole, and
+    // `ceiling` count as if the surface were there, and so does all below what begins below
+    // `filled`: gaps are asked for above only. Boxes at most `thin` high are taken whole, and
     // so is what is left after `most` of them: gaps are then fewer or narrower, never wrong.
     [[nodiscard]] std::span<const HeightGap> find(const Prism& prism, double floor, double ceiling,
-                                                  double thin, std::size_t most);
+                                                  double thin, std::size_t most,
+                                                  double filled = -HUGE_VAL);
     // Of the gaps found last, the highest that begins at a height or below.
     [[nodiscard]] NodeRef under(double height) const;
 
@@ -50,8 +52,17 @@ class HeightSearch {
     [[nodiscard]] bool is_settled(const Span& span) const;
     void take(Span span);
 
+    struct Open {
+        NodeRef ref;
+        Span span;
+    };
+    void push(const NodeRef& ref, const Prism& prism);
+    void look_at(const NodeRef& ref, const Prism& prism);
+    void open_up(const Open& open, const Prism& prism, double thin, bool is_whole);
+
     const SolidSurface* surface_;
-    std::vector<NodeRef> stack_;
+    double filled_ = -HUGE_VAL;
+    std::vector<Open> stack_;
     std::vector<Span> taken_; // apart from each other, ascending
     std::vector<HeightGap> gaps_;
 };

@@ -46,6 +46,7 @@ struct SolidProbe {
     WindingSearch windings;
     EscapeSearch escapes;
     double outward = 1; // the side of its triangles on which an escape row was found last
+    bool is_oriented = false;
 };
 
 // Branch and bound over boxes of points. A box is bounded by functions that no point of it can
@@ -86,6 +87,7 @@ class ThicknessQuery {
 
   private:
     static constexpr std::size_t kInherited = 8, kRows = 20;
+    static constexpr std::uint64_t kDoubtful = 8; // of so many cells one looks on both sides
 
     struct Cell {
         Vec3 low, high;
@@ -105,10 +107,10 @@ class ThicknessQuery {
         MatrixGame::Values values{};
     };
     enum class Shrunk : std::uint8_t { kNot, kSmaller, kToNothing };
-    // A direction in which an escape row was looked for.
-    struct Tried {
+    // A direction in which a way out of a body is looked for.
+    struct Way {
         std::size_t body;
-        Vec3 normal;
+        Vec3 up;
     };
 
     void begin(const std::vector<CellBox>& boxes, double bound);
@@ -127,7 +129,7 @@ class ThicknessQuery {
     [[nodiscard]] bool add_rows();
     void try_point(const Vec3& world, const std::array<PointDistance, 2>& near);
     bool add_triangle(std::size_t body, const PointDistance& near);
-    bool add_escape(std::size_t body, const Vec3& normal, const NodeRef& triangle);
+    bool add_escape(std::size_t body, const Vec3& up, const NodeRef& triangle);
     [[nodiscard]] Vec3 side_for(const Vec3& up) const;
     [[nodiscard]] std::optional<CellBox> cut_box(const std::array<Vec3, 3>& axes, bool is_same);
     [[nodiscard]] Shrunk shrink();
@@ -161,9 +163,9 @@ class ThicknessQuery {
     std::uint8_t inside_ = 0, stalls_ = 0;
     bool is_fitted_ = false;
     std::vector<Held> held_;
-    std::vector<Tried> tried_;
+    Vec3 point_{0, 0, 0}; // the candidate looked at last
+    std::vector<Way> tried_, ways_;
     std::vector<NodeRef> hints_;
-    std::vector<Vec3> ways_;
     std::vector<MatrixGame::Values> demands_;
     MatrixGame game_, ends_;
 };

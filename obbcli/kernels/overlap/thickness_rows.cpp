@@ -65,39 +65,43 @@ Vec3 ThicknessQuery::candidate() const {
 bool ThicknessQuery::add_rows() {
     constexpr double kHeavy = 0.1;
     const Vec3 world = frame_.to_world(candidate());
-    const Vec3 point = frame_.to_frame(world);
+    point_ = frame_.to_frame(world);
     ++points_;
     std::array<PointDistance, 2> near;
-    std::vector<NodeRef>& hints = hints_;
     for (std::size_t body = 0; body < 2; ++body) {
-        hints.clear();
+        hints_.clear();
         for (const Held& held : held_) {
             if (rows_[held.id].body == body) {
-                hints.push_back(rows_[held.id].triangle);
+                hints_.push_back(rows_[held.id].triangle);
             }
         }
-        near[body] = probes_[body].nearest.find(point, slack_, hints);
+        near[body] = probes_[body].nearest.find(point_, slack_, hints_);
     }
     try_point(world, near);
     bool is_new = false;
+    ways_.clear();
     for (std::size_t body = 0; body < 2; ++body) {
-        is_new = add_triangle(body, near[body]) || is_new;
-    }
-    for (std::size_t body = 0; body < 2; ++body) {
-        const Vec3 normal = unit_normal(surfaces_[body].triangle(near[body].triangle));
-        is_new = add_escape(body, normal, near[body].triangle) || is_new;
+        // From within, a surface further away than the bound has no say.
+        if ((inside_ >> body & 1U) == 0 || near[body].low < bound_) {
+            is_new = add_triangle(body, near[body]) || is_new;
+            ways_.push_back({body, probes_[body].outward *
+                                       unit_normal(surfaces_[body].triangle(near[body].triangle))});
+        }
     }
     // Where one surface lies along the other, what bounds the one tells where to look for the
     // other.
-    ways_.clear();
     for (const Held& held : held_) {
         if (held.weight >= kHeavy) {
-            ways_.push_back(rows_[held.id].normal);
+            const BoundRow& row = rows_[held.id];
+            const double out = row.is_escape ? 1 : probes_[row.body].outward;
+            ways_.push_back({row.body, out * row.normal});
+            ways_.push_back({1U - row.body, -out * row.normal});
         }
     }
-    for (const Vec3& way : ways_) {
-        for (std::size_t body = 0; body < 2; ++body) {
-            is_new = add_escape(body, way, near[body].triangle) || is_new;
+    for (const Way& way : ways_) {
+        is_new = add_escape(way.body, way.up, near[way.body].triangle) || is_new;
+        if (!probes_[way.body].is_oriented || cells_ % kDoubtful == 0) {
+            is_new = add_escape(way.body, -way.up, near[way.body].triangle) || is_new;
         }
     }
     return is_new;
@@ -127,18 +131,15 @@ bool ThicknessQuery::add_triangle(std::size_t body, const PointDistance& near) {
     return near.high < bound_;
 }
 
-// An escape row along a direction, on whichever side is out.
-bool ThicknessQuery::add_escape(std::size_t body, const Vec3& normal, const NodeRef& triangle) {
+// An escape row along a direction of length 1; true where it lowers the bound at the candidate.
+bool ThicknessQuery::add_escape(std::size_t body, const Vec3& up, const NodeRef& triangle) {
     constexpr double kSame = 1 - 0x1p-40;
-    if (normal == Vec3{0, 0, 0}) {
-        return false;
-    }
-    for (const Tried& tried : tried_) {
-        if (tried.body == body && std::fabs(dot(tried.normal, normal)) > kSame) {
+    for (const Way& tried : tried_) {
+        if (tried.body == body && dot(tried.up, up) > kSame) {
             return false;
         }
     }
-    tried_.push_back({body, normal});
+    tried_.push_back({body, up});
     SolidProbe& probe = probes_[body];
     const double gap = 0.5 * (bound_ - target());
     const double fine = std::max(std::min(tolerance_ * target(), gap), 0.5 * floor_);
@@ -149,38 +150,40 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& normal, const Node
     const double within = 0.02 * fine;
     const double lost = kDiagonal * (within + kCellPad);
     const CellBox::Corners corners = box_.corners(-within);
-    const RowEffort effort{.thin = 0.1 * fine, .useful = bound_};
-    for (const double side : {probe.outward, -probe.outward}) {
-        const Vec3 up = side * normal;
-        const auto found = probe.escapes.find(corners, up, side_for(up), effort);
-        if (!found) {
-            continue;
-        }
-        probe.outward = side;
-        for (std::size_t k = 0; k < held_.size(); ++k) {
-            const BoundRow& row = rows_[held_[k].id];
-            if (row.is_escape && row.body == body && dot(row.normal, found->up) > kSame) {
-                if (row.height <= found->height + 2 * lost) {
-                    return false;
-                }
-                rows_.drop(held_[k].id);
-                held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(k));
-                break;
-            }
-        }
-        BoundRow row;
-        row.triangle = triangle;
-        row.body = static_cast<std::uint8_t>(body);
-        row.is_escape = true;
-        row.normal = found->up;
-        row.height = found->height + 2 * lost;
-        row.slope =
-            slope_of(unit_normal(surfaces_[body].triangle(probe.escapes.under(*found))), found->up);
-        given_up_ = std::max(given_up_, lost);
-        add(row);
-        return true;
+    double top = -HUGE_VAL;
+    for (const Vec3& corner : corners) {
+        top = std::max(top, dot(up, corner));
     }
-    return false;
+    const RowEffort effort{.thin = 0.1 * fine,
+                           .useful = std::max(bound_ + dot(up, point_) - top, 0.0)};
+    const auto found = probe.escapes.find(corners, up, side_for(up), effort);
+    if (!found) {
+        return false;
+    }
+    probe.outward = dot(unit_normal(surfaces_[body].triangle(triangle)), up) < 0 ? -1 : 1;
+    probe.is_oriented = true;
+    BoundRow row;
+    row.height = found->height + 2 * lost;
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+        const BoundRow& other = rows_[held_[k].id];
+        if (other.is_escape && other.body == body && dot(other.normal, found->up) > kSame) {
+            if (other.height <= row.height) {
+                return false;
+            }
+            rows_.drop(held_[k].id);
+            held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(k));
+            break;
+        }
+    }
+    row.triangle = triangle;
+    row.body = static_cast<std::uint8_t>(body);
+    row.is_escape = true;
+    row.normal = found->up;
+    row.slope =
+        slope_of(unit_normal(surfaces_[body].triangle(probe.escapes.under(*found))), found->up);
+    given_up_ = std::max(given_up_, lost);
+    add(row);
+    return row.height - dot(row.normal, point_) < bound_;
 }
 
 } // namespace obb
