@@ -100,6 +100,28 @@ class Volume:
     centroid: Vector | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Region:
+    """A part of the space that two solids share, apart from all others by proof.
+
+    Parts that are about as near to each other as the resolution may be told as one.
+
+    Attributes:
+        bounds: lowest and highest corner of a box along the axes that holds it, world coordinates;
+            up to about the resolution larger than it.
+        point: the centre of a ball in it, world coordinates.
+        thickness: mesh units; (lo, hi), proven: the diameter of its largest ball.
+        triangle_a: row of A's mesh file that is nearest to the point.
+        triangle_b: the same of B.
+    """
+
+    bounds: tuple[Vector, Vector]
+    point: Vector
+    thickness: Bounds
+    triangle_a: int
+    triangle_b: int
+
+
 class OverlapStats(NamedTuple):
     """What a question about an overlap cost.
 
@@ -178,6 +200,10 @@ class Overlap:
             deepest point inside B.
         protrusion_b: how deep B's surface reaches into A.
         volume: how much space both solids share.
+        regions: the parts of the space that both solids share, the thickest first.
+        resolution: mesh units; the boxes by which regions were told apart are no longer.
+        unproven: how many groups of such boxes were left out, as no point is proven to lie in both
+            solids there: faces that coincide, mostly.
         deeper: whether the thickness or a protrusion exceeds `deeper_than`; None where that was
             not asked, or is not known.
         by: which of them was found to exceed it first.
@@ -196,6 +222,9 @@ class Overlap:
     protrusion_a: Depth | None = None
     protrusion_b: Depth | None = None
     volume: Volume | None = None
+    regions: tuple[Region, ...] | None = None
+    resolution: float | None = None
+    unproven: int | None = None
     deeper: bool | None = None
     by: DepthWord | None = None
     separation_along: SeparationAlong | None = None

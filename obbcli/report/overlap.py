@@ -30,6 +30,9 @@ _DEPTHS = {
     "protrusion_b": "B into A",
 }
 
+# Of the regions, as many as the table names: the thickest.
+_MOST_REGIONS = 8
+
 
 def overlap_record(setting: Setting, asked: Asked, answer: Overlap) -> Record:
     """Return the record of a question.
@@ -76,6 +79,7 @@ def overlap_tables(record: Record) -> list[Table]:
         *distance_rows(result),
         *depth_rows(result),
         *_volume_rows(result),
+        *_region_rows(result),
         *_along_rows(result),
         ("band", _band(result["band"])),
     ]
@@ -144,6 +148,25 @@ def _volume_rows(result: Record) -> list[tuple[str, str]]:
         return []
     place = "" if shared["centroid"] is None else f", about {point(shared['centroid'])}"
     return [("volume", f"{bracket(shared['bounds'])}{place}")]
+
+
+def _region_rows(result: Record) -> list[tuple[str, str]]:
+    """Return a row that counts the regions, and one for each of the thickest."""
+    regions = result["regions"]
+    if regions is None:
+        return []
+    told = f"{count(len(regions))}, told apart by boxes of at most {length(result['resolution'])}"
+    if not regions:
+        told = "none"
+    if result["unproven"]:
+        told += f"; {count(result['unproven'])} without a point proven inside both left out"
+    rows = [("regions", told)]
+    for number, region in enumerate(regions[:_MOST_REGIONS], 1):
+        thick = bracket(region["thickness"])
+        rows.append((f"region {number}", f"thickness {thick}, at {point(region['point'])}"))
+    if len(regions) > _MOST_REGIONS:
+        rows.append(("", f"{count(len(regions) - _MOST_REGIONS)} more, with --json"))
+    return rows
 
 
 def _deeper_rows(record: Record) -> list[tuple[str, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 
 import pytest
-from mesh_files.cube_files import as_input, cube, obj
+from mesh_files.cube_files import as_input, cube, obj, objects
 
 from obbcli import Overlap, __version__
 from obbcli.cli.commands.overlap import _CONCERNS
@@ -109,3 +109,26 @@ def test_what_says_nothing_is_one_clear_error(here, obbtree, words, where, code)
 
 def test_command_and_question_know_the_same_fields():
     assert _CONCERNS == CONCERNS
+
+
+def test_regions_are_listed(here, obbtree):
+    (here / "two.obj").write_text(objects(left=0.0, right=2.0))
+    (here / "long.obj").write_text(obj([(4 * x - 0.5, y + 0.5, z) for x, y, z in cube()]))
+    words = ("overlap", "two.obj", "long.obj", "--regions", "--resolution", 0.25)
+
+    result = obbtree(*words, "--json").json["result"]
+    table = obbtree(*words).out
+
+    assert len(result["regions"]) == 2
+    assert result["resolution"] == 0.25
+    assert result["regions"][0]["thickness"][0] <= 0.5 <= result["regions"][0]["thickness"][1]
+    assert "2, told apart by boxes of at most 0.25" in table
+    assert "region 2" in table
+
+
+def test_resolution_without_regions_is_refused(here, obbtree):
+    ended = obbtree("overlap", *APART, "--resolution", 1)
+
+    assert ended.code == 2
+    assert "add --regions" in ended.err
+    assert obbtree("overlap", *APART, "--regions", "--resolution", 0).code == 2

@@ -71,6 +71,14 @@ Examples:
     metavar="X Y Z",
     help="Ask how far, in mesh units, A has to go this way to be free for good [default: do not].",
 )
+@option(QUESTION, "--regions", is_flag=True, help="Ask for the parts of what both share.")
+@option(
+    QUESTION,
+    "--resolution",
+    type=Finite(0.0),
+    metavar="R",
+    help="With --regions: told apart by boxes of at most R, in mesh units [default: by size].",
+)
 @about_two("Exit with 1 where they overlap, or are deeper than O; 0 where not.")
 def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """Do A and B, as solids, touch or overlap, and how deep is one in the other?
@@ -111,6 +119,10 @@ def _wanted(flags: dict[str, Any]) -> Asked:
     """
     from obbcli.questions.overlap.asked import Asked
 
+    resolution = flags.pop("resolution")
+    if resolution is not None and not flags["regions"]:
+        raise UsageError("--resolution", "is that of --regions", "add --regions, or leave it out")
+    flags["regions"] = (resolution or flags["regions"]) if resolution != 0 else 0.0
     given = {name: value for name, value in flags.items() if value is not None}
     with usage_errors():
         return Asked.of(**given)

@@ -33,6 +33,8 @@ class Asked(NamedTuple):
         direction: unit; the way on which A is to leave B. None: not asked.
         values: whether depths are to be narrowed down to the tolerance: `"all"`; `"deep"`, those
             of bodies that do more than touch; `"none"`, as far as the answer needs it.
+        resolution: mesh units; the regions are asked for, told apart at this. 0: at a fiftieth of
+            the diagonal of the box that both bodies have in common. None: not asked.
         has_volume: whether the shared volume is asked for where depths are narrowed down.
     """
 
@@ -42,6 +44,7 @@ class Asked(NamedTuple):
     direction: Vector | None = None
     values: Literal["all", "deep", "none"] = "all"
     has_volume: bool = True
+    resolution: float | None = None
 
     @classmethod
     def of(
@@ -50,6 +53,7 @@ class Asked(NamedTuple):
         deeper_than: float | None = None,
         touch: Sequence[float] | None = None,
         along: ArrayLike | None = None,
+        regions: float | bool | None = None,
     ) -> Asked:
         """Return what is asked, as `overlap` takes it.
 
@@ -63,7 +67,9 @@ class Asked(NamedTuple):
         limit = None if deeper_than is None else _number("deeper_than", deeper_than)
         band = None if touch is None else checked_touch(touch)
         direction = None if along is None else unit_direction(along)
-        return cls(width, limit, band, direction, "all" if limit is None else "none")
+        values: Literal["all", "none"] = "all" if limit is None else "none"
+        resolution = _resolution(regions)
+        return cls(width, limit, band, direction, values, resolution=resolution)
 
 
 def refuse_other_accuracy(accuracy: Accuracy) -> None:
@@ -76,6 +82,19 @@ def refuse_other_accuracy(accuracy: Accuracy) -> None:
         value = getattr(accuracy, field.name)
         if field.name not in CONCERNS and value != field.default:
             raise MotionError(field.name, "says nothing about an overlap", "leave it out")
+
+
+def _resolution(regions: float | bool | None) -> float | None:
+    """Return the resolution of regions as `Asked` has it."""
+    if regions is None or regions is False:
+        return None
+    if regions is True:
+        return 0.0
+    resolution = _number("regions", regions)
+    if resolution == 0:
+        remedy = "use a number above 0, or True for one that suits the bodies"
+        raise MotionError("regions", "is a resolution of 0", remedy)
+    return resolution
 
 
 def _number(name: str, value: object) -> float:

@@ -18,6 +18,7 @@ from obbcli.questions.overlap.depths import NOTHING
 from obbcli.questions.overlap.meeting import inner_of, share_inside, surfaces_meet
 from obbcli.questions.overlap.order import is_b_first
 from obbcli.questions.overlap.pursuit import Pursuit
+from obbcli.questions.overlap.regions import regions_of
 from obbcli.questions.overlap.solids import DEPTHS, Solids
 from obbcli.questions.pair_question import PairQuestion
 
@@ -42,6 +43,7 @@ def overlap(
     deeper_than: float | None = None,
     touch: Sequence[float] | None = None,
     along: ArrayLike | None = None,
+    regions: float | bool | None = None,
 ) -> Overlap:
     """Return how two bodies lie to each other at t = 0, and how deep one is in the other.
 
@@ -67,6 +69,8 @@ def overlap(
             the larger of 1e-9 sizes and 4 spacings of the coarser file's coordinates, plus both
             sags.
         along: a direction, (3,), world coordinates: ask how far A has to go that way to be free.
+        regions: ask for the parts of what both share, told apart at this resolution, mesh units.
+            True: at a fiftieth of the diagonal of the box that both bodies have in common.
 
     Raises:
         MotionError: an argument is refused, a field of `accuracy` has no meaning here, or posed
@@ -80,7 +84,7 @@ def overlap(
         >>> answer.relation, answer.thickness.bounds
         ('clear', (0.0, 0.0))
     """
-    asked = Asked.of(tolerance, deeper_than, touch, along)
+    asked = Asked.of(tolerance, deeper_than, touch, along, regions)
     used = Accuracy() if accuracy is None else accuracy
     refuse_other_accuracy(used)
     return overlap_of(PairQuestion.of(a, b, 0.0, used), asked)
@@ -101,6 +105,8 @@ def overlap_of(pair: PairQuestion, asked: Asked) -> Overlap:
         found = question.related()
         if asked.direction is not None:
             found["separation_along"] = separation_along(pair, asked.direction, question.pursuit)
+        if asked.resolution is not None:
+            found |= question.regions()
     except (ValueError, kernels.TreeError) as fault:
         if isinstance(fault, kernels.TreeError) or type(fault) is ValueError:
             raise refused(pair.trees, fault) from fault
@@ -147,6 +153,12 @@ class _Question:
         if meets:
             return self._of_meeting_solids()
         return self._of_solids_apart()
+
+    def regions(self) -> dict[str, Any]:
+        """Return the parts of what both share; nothing of surfaces that do not close."""
+        if self._why_open() is not None:
+            return {}
+        return regions_of(self._pair, self._asked, self.band.slack, self.pursuit)
 
     def _why_open(self) -> str | None:
         """Return why there are no depths: a surface that does not close; None of solids."""

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
-from obbcli.answers.overlap import Band, Depth, Gap, Overlap, SeparationAlong, Volume
+from obbcli.answers.overlap import (
+    Band,
+    Depth,
+    Gap,
+    Overlap,
+    Region,
+    SeparationAlong,
+    Volume,
+)
 from obbcli.report.schema.typed import schemas_of
-from obbcli.report.schema.words import Schema, record, ref
+from obbcli.report.schema.words import Schema, list_of, record, ref
 
 _DEPTH_FIELDS = ("thickness", "protrusion_a", "protrusion_b")
 
@@ -16,6 +24,7 @@ def overlap_fields() -> dict[str, Schema]:
         band=record(schemas_of(Band)),
         distance=record(schemas_of(Gap)),
         volume=record(schemas_of(Volume)),
+        regions=list_of(record(schemas_of(Region))),
         separation_along=record(schemas_of(SeparationAlong)),
         stats=ref("stats"),
         **dict.fromkeys(_DEPTH_FIELDS, record(schemas_of(Depth))),
