@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from harness import OURS, Row, alternate, resident_bytes
 from meshes.surfaces import Surface, blob
-from peers import CONTESTANTS, Contestant
+from peers import CONTESTANTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from contestant import Contestant
 
 SIZES = {100_000: 9, 1_000_000: 5}
 QUICK_SIZES = {10_000: 5, 100_000: 3}

@@ -11,12 +11,13 @@ import peer_counts
 from harness import OURS, Row, alternate
 from oracles.mesh import mesh_pairs
 from oracles.still import triangles_intersect
-from peers import CONTESTANTS, Query
+from peers import CONTESTANTS
 from scenes.pairs import POSE_CLASSES, pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from contestant import Query
     from scenes.pairs import Pair
 
 TRUTH_TRIANGLES = 500
