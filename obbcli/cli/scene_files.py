@@ -110,7 +110,7 @@ def mesh_sources(
 
 def decoded(scene: Scene) -> Record:
     """Return how many meshes of a scene's own file were decoded; nothing of other scenes."""
-    from obbcli.motion.assembly import LazyMesh
+    from obbcli.motion.lazy_mesh import LazyMesh
 
     shapes = {id(body.body.shape): body.body.shape for body in scene.bodies}
     parts = [shape for shape in shapes.values() if isinstance(shape, LazyMesh)]

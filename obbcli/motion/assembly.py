@@ -11,74 +11,22 @@ import numpy as np
 
 from obbcli.errors import MotionError
 from obbcli.files import file_and_pattern
-from obbcli.mesh import Mesh, measure
+from obbcli.mesh import Mesh
 from obbcli.mesh.parts.load import read_parts
 from obbcli.mesh.parts.placed import placed
 from obbcli.mesh.parts.selection import selected
 from obbcli.mesh.reading import mesh_of
 from obbcli.motion.body import Body
+from obbcli.motion.lazy_mesh import LazyMesh, used_coordinates
 from obbcli.motion.pose import Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Iterator
+    from collections.abc import Hashable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
     from obbcli.mesh.parts.load import FileParts
     from obbcli.mesh.parts.placed import PlacedPart
-
-
-class LazyMesh:
-    """A mesh that is decoded when it is first asked for; the parts of one shape share it.
-
-    Args:
-        decode: returns the mesh.
-    """
-
-    def __init__(self, decode: Callable[[], Mesh]) -> None:
-        self._decode: Callable[[], Mesh] | None = decode
-        self._mesh: Mesh | None = None
-        self._lock = RLock()
-
-    @property
-    def is_decoded(self) -> bool:
-        """Whether the mesh was asked for."""
-        return self._mesh is not None
-
-    @property
-    def mesh(self) -> Mesh:
-        """The mesh.
-
-        Raises:
-            MeshError: it is damaged.
-        """
-        with self._lock:
-            if self._mesh is None:
-                assert self._decode is not None
-                self._mesh, self._decode = self._decode(), None
-            return self._mesh
-
-    @cached_property
-    def coordinates(self) -> NDArray[np.float64]:
-        """The vertices that triangles use, an axis a row, (3, N): what bounds of copies take."""
-        return _coordinates(self.mesh)
-
-    @property
-    def bounds(self) -> NDArray[np.float64]:
-        """Lower and upper corner of the mesh, (2, 3)."""
-        return self.mesh.bounds
-
-    @property
-    def surface_centroid(self) -> NDArray[np.float64]:
-        """Area-weighted centroid of the mesh, (3,)."""
-        return self.mesh.surface_centroid
-
-
-def _coordinates(shape: Mesh | LazyMesh) -> NDArray[np.float64]:
-    """Return the vertices that triangles use, an axis a row, (3, N)."""
-    if isinstance(shape, LazyMesh):
-        return shape.coordinates
-    return np.ascontiguousarray(measure.used_vertices(shape.vertices, shape.triangles).T)
 
 
 class Part:
@@ -170,7 +118,7 @@ class Part:
         if np.array_equal(self.pose.rotation, np.eye(3)):
             # A shift rounds every coordinate alike, so that the ends stay the ends.
             return self.pose.apply(self.mesh.bounds)
-        x, y, z = _coordinates(self.shape)
+        x, y, z = used_coordinates(self.shape)
         low, high = [], []
         # As `Pose.apply`, but an axis at a time, which takes a tenth of its time. The shift comes
         # last, and rounds the ends to the ends.

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from obbcli.files import file_and_pattern
 from obbcli.mesh import Mesh, load_mesh
 from obbcli.mesh.measured_file import MeasuredFile
-from obbcli.motion.assembly import LazyMesh
 from obbcli.motion.body import Body, with_pivot
+from obbcli.motion.lazy_mesh import LazyMesh
 from obbcli.scene.results import BodyStats
 from obbcli.tree.head import TreeHead
 from obbcli.tree.tree import ObbTree, begins_as_tree, check_measures
