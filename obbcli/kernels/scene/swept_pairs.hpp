@@ -2,23 +2,13 @@
 // constant velocities, in a tree over space and time.
 #pragma once
 
-#include "numbers/vec.hpp"
+#include "scene/swept_box.hpp"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace obb {
-
-// A box that holds a body throughout [start, end]: at `start` it is [low, high], and it travels.
-// A body with several is in the one or the other of them at any time. Where anything is not finite,
-// nothing is known of the body then.
-struct SweptBox {
-    double start, end; // s
-    Vec3 low, high;    // mesh units
-    Vec3 velocity;     // mesh units a second
-    std::uint32_t body;
-};
 
 // What is known of pairs beforehand.
 struct SweptBodies {
