@@ -72,7 +72,8 @@ def alternate(
     Args:
         candidates: by who; each is called once before the clock runs.
         rounds: in each, every candidate has its turn; who is first changes.
-        sample_seconds: calls too short for the clock are repeated for about so long a turn.
+        sample_seconds: calls too short for the clock are repeated for about so long a turn. A call
+            that is not timed goes before each such turn: it warms what others have left cold.
     """
     samples: dict[str, list[float]] = {who: [] for who in candidates}
     order = list(candidates)
@@ -82,6 +83,8 @@ def alternate(
         loops = {who: _loops(call, sample_seconds) for who, call in candidates.items()}
         for _ in range(rounds):
             for who in order:
+                if sample_seconds > 0:
+                    candidates[who]()
                 samples[who].append(_seconds(candidates[who], loops[who]))
             order = order[1:] + order[:1]
     finally:
@@ -98,9 +101,11 @@ def summarise(times: Sequence[float]) -> Timing:
 
 def _loops(call: Callable[[], object], sample_seconds: float) -> int:
     call()
-    if sample_seconds == 0.0:
-        return 1
-    return max(1, math.ceil(sample_seconds / max(_seconds(call, 1), 1e-7)))
+    loops = 1
+    # One call of less than a microsecond takes as long as looking at the clock does.
+    while (seconds := loops * _seconds(call, loops)) < sample_seconds:
+        loops = min(8 * loops, math.ceil(1.1 * loops * sample_seconds / max(seconds, 1e-7)))
+    return loops
 
 
 def _seconds(call: Callable[[], object], loops: int) -> float:

@@ -18,6 +18,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import bench_build
+import bench_contacts
 import bench_distance
 import bench_first_contact
 import bench_fits
@@ -43,6 +44,7 @@ BENCHES = {
     "first-contact": lambda options: bench_first_contact.run(
         options.quick, options.queries, options.meshes
     ),
+    "contacts": lambda options: bench_contacts.run(options.quick),
     "fits": lambda options: bench_fits.run(options.quick, options.queries, options.meshes),
     "scene": lambda options: bench_scene.run(options.quick),
     "screws": lambda options: bench_screws.run(options.quick),
