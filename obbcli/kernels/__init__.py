@@ -116,6 +116,8 @@ class QuickQuestion(NamedTuple):
             kernels' queries: about t = 0, about the motion or None, and whether all is answered.
         told: returns the answer, given the bodies and what was found, an `AtRestAnswer`, of bodies
             at rest or apart. None: what was found is the answer.
+        named: names the parts in an answer about trees that have some, given the bodies and what
+            was found. Needed where that is the answer.
     """
 
     limits: Limits
@@ -125,6 +127,7 @@ class QuickQuestion(NamedTuple):
     screw_of: Callable[..., Screw]
     going_on: Callable[..., object]
     told: Callable[..., object] | None = None
+    named: Callable[..., object] | None = None
 
 
 def asked_by_kernels_first(question: QuickQuestion) -> Callable[[_Function], _Function]:

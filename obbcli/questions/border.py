@@ -47,6 +47,7 @@ def limits_of(accuracy: Accuracy) -> kernels.Limits:
 def quick_question(
     going_on: Callable[..., object],
     told: Callable[..., object] | None = None,
+    named: Callable[..., object] | None = None,
     *,
     any_contact: bool = False,
 ) -> kernels.QuickQuestion:
@@ -55,13 +56,14 @@ def quick_question(
     Args:
         going_on: as `kernels.QuickQuestion` has it.
         told: likewise.
+        named: likewise.
         any_contact: likewise.
     """
     exact = Accuracy()
     tolerance = TIME_TOLERANCE * DEFAULT_DURATION
     limits = limits_of(exact)
     return kernels.QuickQuestion(
-        limits, DEFAULT_DURATION, tolerance, any_contact, screw_of, going_on, told
+        limits, DEFAULT_DURATION, tolerance, any_contact, screw_of, going_on, told, named
     )
 
 

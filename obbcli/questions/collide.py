@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.answers.collision import Collision
+from obbcli.motion.body import as_body
 from obbcli.questions.border import limits_of, placed_of, quick_question, refused
-from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.pair_question import PairQuestion, trees_of, with_parts
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
@@ -22,7 +23,11 @@ def _going_on(a: Body | Shape, b: Body | Shape, queries: Queries) -> Collision:
     return collision_of(going_on(a, b, queries, any_contact=True))
 
 
-@kernels.asked_by_kernels_first(quick_question(_going_on, any_contact=True))
+def _named(a: Body | Shape, b: Body | Shape, found: Collision) -> Collision:
+    return with_parts(trees_of((as_body(a), as_body(b))), found, found.witness)
+
+
+@kernels.asked_by_kernels_first(quick_question(_going_on, named=_named, any_contact=True))
 def collide(
     a: Body | Shape,
     b: Body | Shape,

@@ -10,7 +10,7 @@ from obbcli.answers.status import Status
 from obbcli.answers.words import EVIDENCES, FEATURES
 from obbcli.motion.body import as_body
 from obbcli.questions.budget import POPS_A_SLICE
-from obbcli.questions.pair_question import trees_of
+from obbcli.questions.pair_question import trees_of, with_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -123,10 +123,10 @@ def answer_told(a: Body | Shape, b: Body | Shape, found: Collision) -> FirstCont
         b: as `a`.
         found: what `collide` says of them.
     """
-    contact = _SEPARATED
-    if found.witness is not None:
-        bodies = as_body(a), as_body(b)
-        contact = contact_at_start(bodies, trees_of(bodies), *found.witness)
-    elif found.status is Status.UNRESOLVED:
-        contact = unresolved(0.0)
-    return FirstContact.of(contact, found.stats)
+    if found.witness is None:
+        is_open = found.status is Status.UNRESOLVED
+        return FirstContact.of(unresolved(0.0) if is_open else _SEPARATED, found.stats)
+    bodies = as_body(a), as_body(b)
+    trees = trees_of(bodies)
+    answer = FirstContact.of(contact_at_start(bodies, trees, *found.witness), found.stats)
+    return with_parts(trees, answer, found.witness)

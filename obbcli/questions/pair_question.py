@@ -109,16 +109,10 @@ class PairQuestion(NamedTuple):
         """Return a new answer, which names the selected parts that its triangles are of.
 
         Args:
-            answer: that nobody else has yet.
-            triangles: of A and B; None where it tells none.
+            answer: as `with_parts` of this module has it.
+            triangles: likewise.
         """
-        a, b = self.trees
-        if triangles is not None and (a.parts or b.parts):
-            # Past the frozen dataclass, whose own way makes a second answer.
-            fields = vars(answer)
-            fields["part_a"] = a.part_of(triangles[0])
-            fields["part_b"] = b.part_of(triangles[1])
-        return answer
+        return with_parts(self.trees, answer, triangles)
 
     @property
     def time_tolerance(self) -> float:
@@ -131,6 +125,25 @@ def _resolved(body: Body) -> Body:
     if steady is None or steady is body.motion:
         return body
     return Body(body.shape, body.pose, steady)
+
+
+def with_parts(
+    trees: Trees, answer: _Answer, triangles: tuple[int | None, int | None] | None
+) -> _Answer:
+    """Return a new answer, which names the selected parts that its triangles are of.
+
+    Args:
+        trees: of A and B.
+        answer: that nobody else has yet.
+        triangles: of A and B; None where it tells none.
+    """
+    a, b = trees
+    if triangles is not None and (a.parts or b.parts):
+        # Past the frozen dataclass, whose own way makes a second answer.
+        fields = vars(answer)
+        fields["part_a"] = a.part_of(triangles[0])
+        fields["part_b"] = b.part_of(triangles[1])
+    return answer
 
 
 def check_units(units: dict[str, str | None]) -> None:

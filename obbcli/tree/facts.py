@@ -57,17 +57,14 @@ class TreeFacts:
         self.kernel = made.kernel
         self.unit: str | None = made.description.unit
         self.parts: tuple[PartRows, ...] = made.description.parts
-        self.kernel.is_labelled = self.unit is not None or bool(self.parts)
-
-    @property
-    def is_labelled(self) -> bool:
-        """Whether a question compares its unit or names its parts, which the kernels do not."""
-        return self.kernel.is_labelled
+        # What questions to the kernels alone look at.
+        self.kernel.unit = self.unit or ""
+        self.kernel.has_parts = bool(self.parts)
 
     @cached_property
-    def at_rest(self) -> kernels.Placed | None:
-        """The tree as its file has it, as the kernels see it; None where it is labelled."""
-        return None if self.is_labelled else kernels.Placed(self.kernel, Pose().kernel)
+    def at_rest(self) -> kernels.Placed:
+        """The tree as its file has it, as the kernels see it."""
+        return kernels.Placed(self.kernel, Pose().kernel)
 
     @property
     def place(self) -> str:

@@ -9,10 +9,12 @@ import inspect
 import pickle
 import pydoc
 import signal
+import sys
 import weakref
 
 import numpy as np
 import pytest
+from mesh_files.cube_files import objects
 
 import obbcli
 from obbcli import (
@@ -146,6 +148,38 @@ def test_labels_are_looked_at(tree):
             quick(Body(one, motion=motion), Body(other))
         with pytest.raises(MeshError, match="A is in m, B in mm"):
             first_contact(Body(one, motion=motion), Body(other))
+
+
+def no_function(*_, **__):
+    raise AssertionError("the kernels answer this alone")
+
+
+@pytest.mark.parametrize("unit_b", ["m", None])
+def test_units_that_agree_are_left_to_the_kernels(tree, unit_b, monkeypatch):
+    one = ObbTree.build(tree.mesh.in_unit("m"), lazy=False)
+    other = one if unit_b else tree
+    away = Body(other, Pose(translation=[0, 0, 500]))
+    wanted = [quick(one, away, 0.0), quick(one, Body(other), 0.0)]
+    monkeypatch.setattr(sys.modules[quick.__module__], "collide_pair", no_function)
+
+    found = [quick(one, away), quick(one, Body(other))]
+
+    assert [answer.collides for answer in found] == [False, True]
+    assert [*map(without_seconds, found)] == [*map(without_seconds, wanted)]
+
+
+def test_parts_are_named_of_what_the_kernels_found(tmp_path, monkeypatch):
+    path = tmp_path / "cubes.obj"
+    path.write_text(objects(base=0.0, arm=1.0, tip=10.0))
+    a, b = (ObbTree.build(f"{path}#{names}") for names in ("[bt]*", "arm"))
+    monkeypatch.setattr(sys.modules[quick.__module__], "collide_pair", no_function)
+
+    for bodies in ((a, b), (Body(a), Body(b)), (Body(a, motion=Motion([1, 0, 0])), Body(b))):
+        for answer in (quick(*bodies), first_contact(*bodies)):
+            assert answer.collides
+            assert (answer.part_a, answer.part_b) == ("base", "arm")
+    apart = quick(Body(a), Body(b, Pose(translation=[0, 0, 50])))
+    assert (apart.collides, apart.part_a, apart.part_b) == (False, None, None)
 
 
 def test_motion_that_leaves_the_range_of_double_is_refused(tree):

@@ -16,6 +16,7 @@
 #include <initializer_list>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -83,9 +84,8 @@ struct Tree {
     const obb::TreeBuilder* builder = nullptr; // of a tree that grows
     // How many boxes the whole tree has; where its builder leaves that open, at most.
     std::uint64_t possible_node_count = view.nodes.size();
-    // Whether it has a unit or names of parts: such bodies are asked about by Python functions,
-    // which compare the ones and tell the others.
-    bool is_labelled = false;
+    std::string unit{};     // of length; empty where none is stated
+    bool has_parts = false; // with names, which answers tell
 
     [[nodiscard]] std::uint64_t node_count() const;
 };

@@ -28,8 +28,8 @@ struct PlacedObject {
     PyObject* pose;
     PyObject* motion;
     Placed here;    // no tree where the shape is none yet
-    bool rests;     // and has no labels that a question looks at
-    bool is_steady; // its velocities are constant, and the same of labels
+    bool rests;
+    bool is_steady; // its velocities are constant
 };
 
 [[nodiscard]] PlacedObject* as_placed(PyObject* object);

@@ -79,9 +79,8 @@ void set_body(PlacedObject& self, PyObject* shape, PyObject* pose, PyObject* mot
     hold(self.pose, pose);
     hold(self.motion, motion);
     place(self, tree.ptr(), as_pose(pose)->pose);
-    const bool is_told = self.here.tree == nullptr || !self.here.tree->is_labelled;
-    self.rests = rests && is_told;
-    self.is_steady = is_told && Py_TYPE(motion) == Py_TYPE(at_rest);
+    self.rests = rests;
+    self.is_steady = Py_TYPE(motion) == Py_TYPE(at_rest);
 }
 
 // A tree at a pose, moving with constant velocities if at all. Other arguments are looked at by the
@@ -200,8 +199,7 @@ PyGetSetDef body_properties[] = {
     {"_motion", &motion_of, nullptr, "How it moves from there.", nullptr},
     {"placed", &placed_of, nullptr,
      "The tree at its pose as the kernels see it; None where the shape is no tree yet.", nullptr},
-    {"at_rest", &resting_of, nullptr,
-     "The same of a body that does not move; None of others, and where the tree is labelled.",
+    {"at_rest", &resting_of, nullptr, "The same of a body that does not move; None of others.",
      nullptr},
     {}};
 PyMethodDef body_methods[] = {

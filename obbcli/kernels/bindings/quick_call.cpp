@@ -24,13 +24,14 @@ struct CallObject {
     PyObject* screw_of; // of a body and its tree: how it moves, as the kernels see it
     PyObject* going_on; // answers a question about moving bodies that is not over yet
     PyObject* told;     // makes the answer of bodies and what was found; None: that is the answer
+    PyObject* named;    // names the parts in an answer that is what was found
     obb::ContactQueryOptions options; // of a question without more arguments
 };
 
 using CallField = PyObject* CallObject::*;
-constexpr std::array<CallField, 5> kHeld{&CallObject::dict, &CallObject::function,
+constexpr std::array<CallField, 6> kHeld{&CallObject::dict,     &CallObject::function,
                                          &CallObject::screw_of, &CallObject::going_on,
-                                         &CallObject::told};
+                                         &CallObject::told,     &CallObject::named};
 
 PyObject* at_rest_name = nullptr;
 
@@ -65,12 +66,21 @@ nb::object called(PyObject* function, std::initializer_list<PyObject*> args) {
     return result;
 }
 
-nb::object answer_told(const CallObject& self, PyObject* a, PyObject* b, const AtRestFound& found) {
+nb::object answer_told(const CallObject& self, PyObject* a, PyObject* b, const AtRestFound& found,
+                       bool has_parts) {
     nb::object answer = nb::steal(answer_of(found));
     if (!answer.is_valid()) {
         throw nb::python_error();
     }
-    return self.told == Py_None ? answer : called(self.told, {a, b, answer.ptr()});
+    if (self.told != Py_None) {
+        return called(self.told, {a, b, answer.ptr()});
+    }
+    return found.has_witness && has_parts ? called(self.named, {a, b, answer.ptr()}) : answer;
+}
+
+// Two units are for the function to refuse.
+bool are_comparable(const Tree& a, const Tree& b) {
+    return a.unit == b.unit || a.unit.empty() || b.unit.empty();
 }
 
 obb::Screw screw_of(const CallObject& self, PlacedObject& body) {
@@ -86,17 +96,18 @@ PyObject* quick_answer(const CallObject& self, PyObject* first, PyObject* second
     nb::object owner_a, owner_b;
     PlacedObject* a = askable(first, owner_a);
     PlacedObject* b = a == nullptr ? nullptr : askable(second, owner_b);
-    if (b == nullptr) {
+    if (b == nullptr || !are_comparable(*a->here.tree, *b->here.tree)) {
         return nullptr;
     }
+    const bool has_parts = a->here.tree->has_parts || b->here.tree->has_parts;
     if (a->rests && b->rests) {
         const AtRestFound found = ask_at_rest(a->here, b->here, self.options.limits);
-        return answer_told(self, first, second, found).release().ptr();
+        return answer_told(self, first, second, found, has_parts).release().ptr();
     }
     const obb::Screw screw_a = screw_of(self, *a), screw_b = screw_of(self, *b);
     const MovingAsked asked = ask_moving(a->here, screw_a, b->here, screw_b, self.options);
     const nb::object answer = asked.is_told
-                                  ? answer_told(self, first, second, asked.found)
+                                  ? answer_told(self, first, second, asked.found, has_parts)
                                   : called(self.going_on, {first, second, asked.queries.ptr()});
     return nb::object(answer).release().ptr();
 } catch (nb::python_error& error) {
@@ -118,11 +129,11 @@ PyObject* call(PyObject* self, PyObject* const* args, std::size_t flags, PyObjec
 
 PyObject* new_call(PyTypeObject* type, PyObject* args, PyObject*) {
     PyObject *function = nullptr, *limits = nullptr, *screw = nullptr, *going_on = nullptr,
-             *told = nullptr;
+             *told = nullptr, *named = nullptr;
     double duration = 0, tolerance = 0;
     int any_contact = 0;
-    if (PyArg_ParseTuple(args, "OOddpOOO", &function, &limits, &duration, &tolerance, &any_contact,
-                         &screw, &going_on, &told) == 0) {
+    if (PyArg_ParseTuple(args, "OOddpOOOO", &function, &limits, &duration, &tolerance, &any_contact,
+                         &screw, &going_on, &told, &named) == 0) {
         return nullptr;
     }
     if (!nb::isinstance<obb::Limits>(nb::handle(limits))) {
@@ -136,6 +147,7 @@ PyObject* new_call(PyTypeObject* type, PyObject* args, PyObject*) {
         hold(cast(self)->screw_of, screw);
         hold(cast(self)->going_on, going_on);
         hold(cast(self)->told, told);
+        hold(cast(self)->named, named);
         const obb::Limits& given = *nb::inst_ptr<obb::Limits>(limits);
         new (&cast(self)->options) obb::ContactQueryOptions{.duration = duration,
                                                             .time_tolerance = tolerance,

@@ -147,7 +147,8 @@ void bind_tree(nb::module_& m) {
         .def("last_boxes_under", &under, "slot"_a)
         .def_prop_ro("node_count", &Tree::node_count)
         .def_rw("possible_node_count", &Tree::possible_node_count)
-        .def_rw("is_labelled", &Tree::is_labelled);
+        .def_rw("unit", &Tree::unit)
+        .def_rw("has_parts", &Tree::has_parts);
 
     nb::class_<TreeBuilder>(m, "TreeBuilder")
         .def("__init__", &init_builder, "vertices"_a, "corners"_a, "fit"_a, "split"_a,
