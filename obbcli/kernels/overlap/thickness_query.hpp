@@ -164,6 +164,7 @@ class ThicknessQuery {
     bool is_fitted_ = false;
     std::vector<Held> held_;
     Vec3 point_{0, 0, 0}; // the candidate looked at last
+    double lowest_ = 0;   // what an escape row says of it at least
     std::vector<Way> tried_, ways_;
     std::vector<NodeRef> hints_;
     std::vector<MatrixGame::Values> demands_;

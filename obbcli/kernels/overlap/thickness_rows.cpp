@@ -67,6 +67,7 @@ bool ThicknessQuery::add_rows() {
     const Vec3 world = frame_.to_world(candidate());
     point_ = frame_.to_frame(world);
     ++points_;
+    lowest_ = HUGE_VAL;
     std::array<PointDistance, 2> near;
     for (std::size_t body = 0; body < 2; ++body) {
         hints_.clear();
@@ -98,7 +99,11 @@ bool ThicknessQuery::add_rows() {
             ways_.push_back({1U - row.body, -out * row.normal});
         }
     }
+    const double least = target();
     for (const Way& way : ways_) {
+        if (lowest_ <= least) {
+            break; // enough for this point
+        }
         is_new = add_escape(way.body, way.up, near[way.body].triangle) || is_new;
         if (!probes_[way.body].is_oriented || cells_ % kDoubtful == 0) {
             is_new = add_escape(way.body, -way.up, near[way.body].triangle) || is_new;
@@ -162,14 +167,15 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& up, const NodeRef&
     }
     probe.outward = dot(unit_normal(surfaces_[body].triangle(triangle)), up) < 0 ? -1 : 1;
     probe.is_oriented = true;
+    bool is_lower = true; // than the same row of a larger cell
     BoundRow row;
     row.height = found->height + 2 * lost;
     for (std::size_t k = 0; k < held_.size(); ++k) {
         const BoundRow& other = rows_[held_[k].id];
         if (other.is_escape && other.body == body && dot(other.normal, found->up) > kSame) {
-            if (other.height <= row.height) {
-                return false;
-            }
+            // The slope is of use even where the height is that of the larger cell.
+            is_lower = row.height < other.height;
+            row.height = std::min(row.height, other.height);
             rows_.drop(held_[k].id);
             held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(k));
             break;
@@ -183,7 +189,9 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& up, const NodeRef&
         slope_of(unit_normal(surfaces_[body].triangle(probe.escapes.under(*found))), found->up);
     given_up_ = std::max(given_up_, lost);
     add(row);
-    return row.height - dot(row.normal, point_) < bound_;
+    const double value = row.height - dot(row.normal, point_);
+    lowest_ = std::min(lowest_, value);
+    return is_lower && value < bound_;
 }
 
 } // namespace obb
