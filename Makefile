@@ -23,7 +23,7 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
-.PHONY: help demo test test-extras test-all test-often check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits ray-bounds fuzz fuzz-smoke sanitize-fuzz \
+.PHONY: help demo test test-extras test-all test-often check docs lint format-check types stub-check stub bench sanitize sanitize-threads same-bits ray-bounds gap-bounds fuzz fuzz-smoke sanitize-fuzz \
   determinism test-oldest test-newest faults wheel pictures browser clean
 
 help:
@@ -38,6 +38,7 @@ help:
 	@echo 'make sanitize-threads  trees that grow under many threads, under the thread sanitizer'
 	@echo 'make same-bits that kernels say the same with wide registers and without'
 	@echo 'make ray-bounds that boxes in floats are never apart for too long'
+	@echo 'make gap-bounds that boxes and triangles in floats are never too far apart'
 	@echo 'make faults    full disks, closed streams, 1,000 interrupts: how commands end (FAULT_ARGS="--only stdin")'
 	@echo 'make determinism  the same questions in twenty ways each (DETERMINISM_ARGS="--runs 5")'
 	@echo 'make test-often  make test ten times: in a drawn order, and beside busy loops'
@@ -234,11 +235,13 @@ same-bits: .build/lanes/wide .build/lanes/narrow
 	     -c "$$0" -o $@.objects/"$$(basename "$$0" .cpp)".o'
 	. ./.venv/compiler; $${CXX:-c++} -pthread $@.objects/*.o -o $@
 
-# The margins of boxes in floats, attacked.
-ray-bounds: .build/lanes/ray-bounds
-	.build/lanes/ray-bounds
+# The margins of boxes and triangles in floats, attacked.
+ray-bounds gap-bounds: %: .build/lanes/%
+	$<
 
-.build/lanes/ray-bounds: tests/lanes/ray_bounds.cpp $(SOURCES) | .venv/installed
+.build/lanes/ray-bounds: tests/lanes/ray_bounds.cpp
+.build/lanes/gap-bounds: tests/lanes/gap_bounds.cpp
+.build/lanes/ray-bounds .build/lanes/gap-bounds: $(SOURCES) | .venv/installed
 	@mkdir -p $(@D)
 	. ./.venv/compiler; $${CXX:-c++} -std=c++20 -O2 -ffp-contract=off -fno-math-errno -Wno-psabi -pthread \
 	  -I$(KERNELS) $< $(THREAD_KERNELS) -o $@

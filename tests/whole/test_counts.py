@@ -39,9 +39,11 @@ LIMITS: dict[str, Counts] = {
     "triangle_pairs penetrating": (281, 789, 575, 263),
     "triangle_pairs deep": (2427, 8445, 6332, 2855),
     "triangle_pairs stacked": (1593, 6775, 10570, 2891),
-    "distance gap_1e-1": (243, 892, 315, 318),
-    "distance gap_1e-3": (212, 542, 179, 205),
-    "distance nested": (8622, 70524, 98211, 38585),
+    "distance gap_1e-1": (234, 792, 530, 307),
+    "distance gap_1e-3": (207, 495, 293, 195),
+    "distance nested": (8622, 54542, 125708, 29718),
+    "distance sheets": (8908, 51944, 113901, 27291),
+    "distance interlocked": (2156, 8704, 14238, 3069),
     "first_contact one moves": (295, 785, 611, 285),
     "first_contact one moves past": (169, 662, 11, 167),
     "first_contact one turns": (272, 1825, 125, 980),
@@ -114,7 +116,7 @@ QUESTIONS: dict[str, Callable[[], Counts]] = {
     },
     **{
         f"distance {name}": lambda name=name: _distance(name)
-        for name in ("gap_1e-1", "gap_1e-3", "nested")
+        for name in ("gap_1e-1", "gap_1e-3", "nested", "sheets", "interlocked")
     },
     "first_contact one moves": lambda: _first_contact("gap_1e-1", REST, ALONG),
     "first_contact one moves past": lambda: _first_contact("gap_1e-2", REST, PAST),

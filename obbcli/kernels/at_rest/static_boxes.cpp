@@ -1,6 +1,7 @@
 // The boxes of a question at rest: which parts of a pair that is opened may meet.
 #include "at_rest/static_query.hpp"
 
+#include "descent/opening.hpp"
 #include "numbers/registers.hpp"
 
 #include <algorithm>
@@ -20,24 +21,11 @@ constexpr std::uint32_t kMany = 512;
 // How many bits are set.
 constexpr std::array<unsigned, 16> kCounts{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
-// The boxes under a node come from memory while others are tested. Links need not lead to any box,
-// and where there is no box, nor does what stands behind it.
-OBB_INLINE void fetch_children(const TreeView& tree, const Node& node) {
-    const auto fetch = [](std::uintptr_t place) {
-        __builtin_prefetch(reinterpret_cast<const void*>(place));
-    };
-    fetch(reinterpret_cast<std::uintptr_t>(&node) + sizeof(Node));
-    fetch(reinterpret_cast<std::uintptr_t>(tree.nodes.data()) + sizeof(Node) * node.right);
-}
-
 } // namespace
 
 OBB_INLINE StaticQuery::Pair StaticQuery::part_of(const Opening& opening, std::size_t lane) {
-    const auto part = [](const NodeRef& ref, const Node* opened, std::size_t k) {
-        return opened == nullptr ? ref : TreeView::child(ref, *opened, k);
-    };
-    return {part(opening.pair.a, opening.node_a, kOfA[lane]),
-            part(opening.pair.b, opening.node_b, kOfB[lane])};
+    return {part_of_node(opening.pair.a, opening.node_a, kOfA[lane]),
+            part_of_node(opening.pair.b, opening.node_b, kOfB[lane])};
 }
 
 // The nearest comes on top, the others in the order of the lanes. A branch a lane, of which the

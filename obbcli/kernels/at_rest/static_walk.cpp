@@ -1,10 +1,10 @@
 // The walk of a question at rest: which pair comes next, and which of its nodes are opened.
 #include "at_rest/static_query.hpp"
 
+#include "descent/opening.hpp"
 #include "numbers/registers.hpp"
 #include "work/slice.hpp"
 
-#include <array>
 #include <cstdint>
 
 namespace obb {
@@ -16,28 +16,6 @@ constexpr double kAlike = 0.5;
 
 // So many pops open one pair alone.
 constexpr std::uint64_t kAlone = 16;
-
-// The lanes with any of some parts of A, and of B; a bit each of the number is a part.
-constexpr std::array<unsigned, 4> kLanesOfA{0, 0b0101, 0b1010, 0b1111};
-constexpr std::array<unsigned, 4> kLanesOfB{0, 0b1001, 0b0110, 0b1111};
-
-// The boxes of a node's children, or of itself where it is not opened; which of them are triangles,
-// a bit each.
-unsigned find_parts(const TreeView& tree, const NodeRef& ref, const Node* opened,
-                    const Node** nodes) {
-    const auto box_of = [&](const NodeRef& part) {
-        return part.is_triangle() ? &kNoBox : &tree.node(part);
-    };
-    if (opened == nullptr) {
-        nodes[0] = nodes[1] = box_of(ref);
-        return ref.is_triangle() ? 0b11 : 0;
-    }
-    const auto [first, second] = tree.children(ref, *opened);
-    nodes[0] = box_of(first);
-    nodes[1] = box_of(second);
-    return static_cast<unsigned>(first.is_triangle()) | static_cast<unsigned>(second.is_triangle())
-                                                            << 1U;
-}
 
 // The boxes of a node's children, if the node is split, both children have boxes, and the links say
 // so. Differences of numbers without a sign that would be negative are large.
@@ -54,13 +32,6 @@ OBB_INLINE bool find_boxes(const TreeView& tree, const NodeRef& ref, const Node&
     nodes[0] = &opened + 1;
     nodes[1] = tree.nodes.data() + opened.right;
     return true;
-}
-
-// The largest half extent, in the frame's unit.
-OBB_INLINE double size_of(const PosedTree& body, const Node& node) {
-    const auto& h = node.half_extents;
-    const float yz = h[1] < h[2] ? h[2] : h[1];
-    return body.node_scale() * double{h[0] < yz ? yz : h[0]};
 }
 
 // The larger of two boxes is to be opened, or both where they are about as large: of sizes that are

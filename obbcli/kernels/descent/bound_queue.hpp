@@ -19,6 +19,12 @@ class BoundQueue {
         return keys_.empty() ? std::numeric_limits<double>::infinity() : keys_.front().time;
     }
 
+    void reserve(std::size_t count) {
+        keys_.reserve(count);
+        entries_.reserve(count);
+        free_.reserve(count);
+    }
+
     void push(const Entry& entry, double time, std::uint32_t rank) {
         std::uint32_t place = 0;
         if (free_.empty()) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "descent/box_tests.hpp"
-#include "numbers/pack.hpp"
 #include "shapes/extremes.hpp"
 #include "shapes/obb.hpp"
 #include "shapes/triangle.hpp"
@@ -16,18 +15,10 @@ namespace obb {
 
 namespace detail {
 
-template <typename Real>
-[[nodiscard]] inline Real greater(Real a, Real b) {
-    return a > b ? a : b;
-}
-template <typename Real>
-[[nodiscard]] inline Real positive_part(Real value) {
-    return greater(value, Real{});
-}
-template <typename Real>
-[[nodiscard]] inline Real clamped(Real value, Real radius) {
-    const Real below = value < radius ? value : radius;
-    return greater(below, -radius);
+[[nodiscard]] inline double positive_part(double value) { return value > 0 ? value : 0; }
+[[nodiscard]] inline double clamped(double value, double radius) {
+    const double below = value < radius ? value : radius;
+    return larger(below, -radius);
 }
 
 } // namespace detail
@@ -40,51 +31,50 @@ template <typename Real>
 // far away, the direction from one box's point nearest the other's centre to the point of the other
 // nearest to that one serves. Edge-edge axes were measured: they save one box in twenty and cost as
 // much as all the rest.
-template <typename Real>
-[[nodiscard]] inline Real distance_square(const BasicObb<Real>& a, const BasicObb<Real>& b,
-                                          const RoundingBound& bound) {
-    const Vector3<Real> d = b.center - a.center;
-    const Vector3<Real> ha = a.half_extents, hb = b.half_extents;
-    const Real sizes = absolute_sum(d) + (ha.x + ha.y + ha.z) + (hb.x + hb.y + hb.z);
-    const Real e = bound.relative * sizes + bound.absolute;
+[[nodiscard]] inline double distance_square(const Obb& a, const Obb& b,
+                                            const RoundingBound& bound) {
+    const Vec3 d = b.center - a.center;
+    const Vec3 ha = a.half_extents, hb = b.half_extents;
+    const double sizes = norm_1(d) + (ha.x + ha.y + ha.z) + (hb.x + hb.y + hb.z);
+    const double e = bound.relative * sizes + bound.absolute;
 
     // c[i][j] = A_i . B_j, t[i] = A_i . D; y and z are coordinates within A and within B.
-    Real c[3][3], r[3][3], t[3], y[3], z[3];
-    Real by_a{}, by_b{};
+    double c[3][3], r[3][3], t[3], y[3], z[3];
+    double by_a{}, by_b{};
     for (std::size_t i = 0; i < 3; ++i) {
         t[i] = dot(a.axes[i], d);
-        y[i] = t[i] - detail::clamped<Real>(t[i], ha[i]);
+        y[i] = t[i] - detail::clamped(t[i], ha[i]);
         for (std::size_t j = 0; j < 3; ++j) {
             c[i][j] = dot(a.axes[i], b.axes[j]);
-            r[i][j] = absolute(c[i][j]);
+            r[i][j] = std::fabs(c[i][j]);
         }
-        const Real radius_b = hb.x * r[i][0] + hb.y * r[i][1] + hb.z * r[i][2];
-        const Real gap = detail::positive_part<Real>(absolute(t[i]) - ha[i] - radius_b - e);
+        const double radius_b = hb.x * r[i][0] + hb.y * r[i][1] + hb.z * r[i][2];
+        const double gap = detail::positive_part(std::fabs(t[i]) - ha[i] - radius_b - e);
         by_a += gap * gap;
     }
     for (std::size_t j = 0; j < 3; ++j) {
-        z[j] = detail::clamped<Real>(-(y[0] * c[0][j] + y[1] * c[1][j] + y[2] * c[2][j]), hb[j]);
-        const Real distance = absolute(dot(b.axes[j], d));
-        const Real radius_a = ha.x * r[0][j] + ha.y * r[1][j] + ha.z * r[2][j];
-        const Real gap = detail::positive_part<Real>(distance - hb[j] - radius_a - e);
+        z[j] = detail::clamped(-(y[0] * c[0][j] + y[1] * c[1][j] + y[2] * c[2][j]), hb[j]);
+        const double distance = std::fabs(dot(b.axes[j], d));
+        const double radius_a = ha.x * r[0][j] + ha.y * r[1][j] + ha.z * r[2][j];
+        const double gap = detail::positive_part(distance - hb[j] - radius_a - e);
         by_b += gap * gap;
     }
     // The direction n from A to B in A's coordinates. Any will do: it need not be exact.
-    Vector3<Real> n{};
-    Real along{}, radius{};
+    Vec3 n{};
+    double along{}, radius{};
     for (std::size_t i = 0; i < 3; ++i) {
-        const Real w = t[i] + (z[0] * c[i][0] + z[1] * c[i][1] + z[2] * c[i][2]);
-        n[i] = w - detail::clamped<Real>(w, ha[i]);
+        const double w = t[i] + (z[0] * c[i][0] + z[1] * c[i][1] + z[2] * c[i][2]);
+        n[i] = w - detail::clamped(w, ha[i]);
         along += n[i] * t[i];
-        radius += ha[i] * absolute(n[i]);
+        radius += ha[i] * std::fabs(n[i]);
     }
     for (std::size_t j = 0; j < 3; ++j) {
-        radius += hb[j] * absolute(n.x * c[0][j] + n.y * c[1][j] + n.z * c[2][j]);
+        radius += hb[j] * std::fabs(n.x * c[0][j] + n.y * c[1][j] + n.z * c[2][j]);
     }
     constexpr double kTiny = 0x1p-1000; // n of zero or of lost digits proves nothing
-    const Real gap = detail::positive_part<Real>(along - radius - e * absolute_sum(n));
-    const Real by_n = gap * gap / (dot(n, n) + kTiny);
-    return detail::greater(detail::greater(by_a, by_b), by_n);
+    const double gap = detail::positive_part(along - radius - e * norm_1(n));
+    const double by_n = gap * gap / (dot(n, n) + kTiny);
+    return larger(larger(by_a, by_b), by_n);
 }
 
 // The same of a box and a triangle, which is first taken into the box's own coordinates.

@@ -44,47 +44,13 @@ namespace {
 constexpr double kFloatBound = 0x1p-17;
 constexpr double kFloatUnderflow = 0x1p-120;
 
-// From A's centres to B's, by pairs.
-template <std::size_t kBytes>
-OBB_INLINE Lanes3<Floats<kBytes>> ways(const EightFrame& frame, const EightNodes& nodes) {
-    using Wide = Doubles<kBytes>;
-    const auto gather = [&](std::size_t first,
-                            Lanes3<Wide>& centers) __attribute__((always_inline)) {
-        const auto at = [&](std::size_t k) __attribute__((always_inline)) {
-            return &nodes[first + k % 2 + 4 * (k / 2)]->center;
-        };
-        Wide extents; // which stand above the third coordinate
-        gather_pairs<kBytes>([&](std::size_t k)
-                                 __attribute__((always_inline)) { return &at(k)->x; },
-                             centers[0], centers[1]);
-        gather_pairs<kBytes>([&](std::size_t k)
-                                 __attribute__((always_inline)) { return &at(k)->z; },
-                             centers[2], extents);
-    };
-    Lanes3<Wide> a, b;
-    gather(0, a);
-    gather(2, b);
-    const Wide scale_a = Wide::at(frame.scale_a.data());
-    Lanes3<Floats<kBytes>> result;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto& row = frame.rows_b[i];
-        const Wide of_a = scale_a * a[i];
-        const Wide of_b = inner(Lanes3<Wide>{Wide::at(row[0].data()), Wide::at(row[1].data()),
-                                             Wide::at(row[2].data())},
-                                b) +
-                          Wide::at(row[3].data());
-        result[i] = rounded_pairs<kBytes>(of_b - of_a, shuffled<1, 0>(of_b) - of_a);
-    }
-    return result;
-}
-
 template <std::size_t kBytes>
 OBB_INLINE void judge(const EightFrame& frame, const EightNodes& nodes, EightVerdicts& verdicts) {
     using Real = Floats<kBytes>;
     const auto node = [&](std::size_t k)
                           __attribute__((always_inline)) -> const Node& { return *nodes[k]; };
     const Boxes<Real> boxes = placed_eight<kBytes>(frame, node);
-    const Lanes3<Real> d = ways<kBytes>(frame, nodes);
+    const Lanes3<Real> d = ways<kBytes>(frame, node);
     const Lanes3<Real>& h = boxes.half_extents;
     const Real size = h[0] + h[1] + h[2];
     const Real way = magnitude(d[0]) + magnitude(d[1]) + magnitude(d[2]);

@@ -67,4 +67,39 @@ OBB_INLINE Boxes<Floats<kBytes>> placed_eight(const Frame& frame, const NodeOf& 
     return boxes;
 }
 
+// From A's centres to B's, by pairs: placed and subtracted in doubles, then rounded. A frame has
+// the unit of A's nodes, rows of B's matrix times that of B's, and B's offset.
+template <std::size_t kBytes, typename Frame, typename NodeOf>
+OBB_INLINE Lanes3<Floats<kBytes>> ways(const Frame& frame, const NodeOf& node) {
+    using Wide = Doubles<kBytes>;
+    const auto gather = [&](std::size_t first,
+                            Lanes3<Wide>& centers) __attribute__((always_inline)) {
+        const auto at = [&](std::size_t k) __attribute__((always_inline)) {
+            return &node(first + k % 2 + 4 * (k / 2)).center;
+        };
+        Wide extents; // which stand above the third coordinate
+        gather_pairs<kBytes>([&](std::size_t k)
+                                 __attribute__((always_inline)) { return &at(k)->x; },
+                             centers[0], centers[1]);
+        gather_pairs<kBytes>([&](std::size_t k)
+                                 __attribute__((always_inline)) { return &at(k)->z; },
+                             centers[2], extents);
+    };
+    Lanes3<Wide> a, b;
+    gather(0, a);
+    gather(2, b);
+    const Wide scale_a = Wide::at(frame.scale_a.data());
+    Lanes3<Floats<kBytes>> result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& row = frame.rows_b[i];
+        const Wide of_a = scale_a * a[i];
+        const Wide of_b = inner(Lanes3<Wide>{Wide::at(row[0].data()), Wide::at(row[1].data()),
+                                             Wide::at(row[2].data())},
+                                b) +
+                          Wide::at(row[3].data());
+        result[i] = rounded_pairs<kBytes>(of_b - of_a, shuffled<1, 0>(of_b) - of_a);
+    }
+    return result;
+}
+
 } // namespace obb

@@ -5,9 +5,9 @@
 #include "at_rest/static_query.hpp"
 #include "descent/bound_queue.hpp"
 #include "descent/limits.hpp"
-#include "descent/placed_boxes.hpp"
 #include "descent/tie_search.hpp"
-#include "distance/distance_lanes.hpp"
+#include "distance/gap_lanes.hpp"
+#include "distance/triangle_blocks.hpp"
 #include "nearest/closest_points.hpp"
 #include "shapes/pose.hpp"
 #include "tree/tree.hpp"
@@ -16,8 +16,8 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace obb {
@@ -50,7 +50,11 @@ class DistanceQuery {
 
   private:
     // Of nodes with at most so many triangles all pairs are looked at, rather than smaller boxes.
-    static constexpr std::uint32_t kFew = 3;
+    static constexpr std::uint32_t kFew = TriangleBlock::kMost;
+    // A search that takes more pops than this does pairs of so few triangles depth-first: the queue
+    // costs more than it saves once the least distance is about known.
+    static constexpr std::uint64_t kPatience = 512;
+    static constexpr std::uint32_t kSmall = 512;
     // Lengths within the query are in its unit: mesh units times 2^-exponent_.
     struct Pair {
         double key; // proven: nothing in `a` is nearer to anything in `b`
@@ -62,6 +66,7 @@ class DistanceQuery {
     struct Incumbent {
         NodeRef a, b;
         NearFeatures features;
+        bool is_measured;           // with twice the digits
         bool is_fine;               // whether the direction is known
         Vector3<Twofold> direction; // from A to B
     };
@@ -72,41 +77,60 @@ class DistanceQuery {
         Triangle triangle; // in the frame of the boxes
     };
 
-    // Some of what is under a node: its children, or itself where it stays.
-    struct Part {
-        std::array<NodeRef, 2> refs;
-        std::uint32_t count;
+    // A pair about to be opened: into the children of either node, or the node as it is.
+    struct Opening {
+        Pair pair;
+        const Node *node_a, *node_b; // where opened
+        unsigned lanes;              // the pairs of parts there are, a bit each by kOfA and kOfB
+        unsigned triangle_lanes;     // those of them with a triangle
+    };
+    // Two at most, which are opened together.
+    struct Openings {
+        std::array<Opening, 2> pairs;
+        EightNodes nodes;
+        std::size_t count = 0;
     };
     struct Candidate {
         double low;
-        std::uint32_t a, b; // positions in their batches
+        std::uint32_t pair; // of two blocks, see second_of_pair()
     };
 
     [[nodiscard]] bool is_diving() const { return high_ > std::numeric_limits<double>::max(); }
     [[nodiscard]] Pair pop();
     void visit(const Pair& pair);
     void part(const Pair& pair);
-    void open(const Pair& pair, bool opens_a, bool opens_b);
+    [[nodiscard]] const Node* box_to_open(const PosedTree& body, const NodeRef& ref,
+                                          std::uint32_t max_depth) const;
     void open_leaf(const Pair& pair, bool opens_a);
-    [[nodiscard]] Part part_of(const PosedTree& body, const NodeRef& ref, bool opens) const;
-    void add_by_lanes(const Pair& pair, const Part& a, const Part& b);
-    void add_one_by_one(const Pair& pair, const Part& a, const Part& b);
+    void wait_to_open(const Pair& pair, const Node* node_a, const Node* node_b);
+    [[nodiscard]] bool open_waiting();
+    void open_all(Openings& openings);
+    void add_parts(const Opening& opening, const EightGaps& gaps, std::size_t first_lane);
+    void add_part(const Opening& opening, std::size_t lane, double key);
+    void add_part_next(const Opening& opening, std::size_t lane, double key);
+    [[nodiscard]] static Pair part_of(const Opening& opening, std::size_t lane, double key);
+    [[nodiscard]] bool needs_doubles(const Opening& opening, std::size_t lane, double key,
+                                     double error) const;
+    [[nodiscard]] double key_in_doubles(const Opening& opening, std::size_t lane);
+    [[nodiscard]] bool is_stacked(const NodeRef& a, const NodeRef& b) const {
+        return counts_.pops > kPatience && a.triangle_count() + b.triangle_count() <= kSmall;
+    }
+    void stop();
     void measure_all(const Pair& pair);
+    [[nodiscard]] std::uint32_t keep_by_edges(const TriangleBlock& a, const TriangleBlock& b,
+                                              std::span<Candidate> candidates);
+    void keep_unsettled(Candidate candidate, std::span<Candidate> candidates, std::uint32_t& kept);
     void measure_one(const Pair& pair, const Triangle& a, const Triangle& b);
     void refine(const Pair& pair);
     void close(const Pair& pair);
 
-    // How a pair goes on: with the children of one or both, with their triangles, or not at all.
-    enum class Next : std::uint8_t { kOpenA, kOpenB, kOpenBoth, kMeasure, kClose };
-    [[nodiscard]] Next next(const Pair& pair) const;
-    [[nodiscard]] bool is_open(const Node& node, const NodeRef& ref, std::uint32_t max_depth) const;
     [[nodiscard]] Side side_of(const PosedTree& body, const NodeRef& ref) const;
     [[nodiscard]] double bound(const Side& a, const Side& b);
     [[nodiscard]] double high_in_unit(double length, int exponent) const;
     [[nodiscard]] double low_in_unit(double length, int exponent) const;
 
     // Whether a lower bound is as good as the least distance found.
-    [[nodiscard]] bool is_settled(double key) const;
+    [[nodiscard]] bool is_settled(double key) const { return high_ - key <= slack_; }
     [[nodiscard]] double slack() const; // of the least distance
     [[nodiscard]] bool has_many_ties() const;
 
@@ -123,7 +147,7 @@ class DistanceQuery {
     void settle(double key) { low_ = std::min(low_, key); }
     void add(const Pair& pair);
     [[nodiscard]] Triangle in_unit(const Triangle& t) const;
-    void take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
+    bool take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
     void touch(const NodeRef& a, const NodeRef& b);
 
     PosedTree a_, b_;
@@ -133,14 +157,18 @@ class DistanceQuery {
     int exponent_ = 0;
     double unit_ = 0; // 2^-exponent_; 0 where products with it may underflow
     std::array<double, 2> unit_factors_{1, 1}; // of which the product is 2^-exponent_
-    // On the heap: vectors this wide want more alignment than the objects that hold queries have.
-    std::unique_ptr<LaneFrame> lanes_ = std::make_unique<LaneFrame>();
+    GapFrame frame_;
     double tolerance_ = 0;
-    std::array<double, 2> box_units_{1, 1}; // of the trees' lengths
-    BoundQueue<Pair> queue_;                // by their keys
-    std::vector<Pair> stack_;               // small pairs, done before the queue goes on
+    bool is_coarse_; // boxes may stand for triangles
+    TriangleBlocks blocks_a_, blocks_b_;
+    BoundQueue<Pair> queue_;  // by their keys
+    std::vector<Pair> stack_; // small pairs, done before the queue goes on
+    // Popped, and opened when two more have been: their boxes come from memory meanwhile.
+    std::array<Openings, 2> openings_;
+    std::size_t filled_ = 0;                                // which of them takes the next
     double low_ = std::numeric_limits<double>::infinity();  // least bound of what is settled
     double high_ = std::numeric_limits<double>::infinity(); // between explicit points
+    double slack_ = -1;                                     // slack(), once there are such points
     DistanceBounds best_{};
     Incumbent incumbent_{};
     std::array<TieCrowd, 2> crowds_; // before there are many ties, and from then on

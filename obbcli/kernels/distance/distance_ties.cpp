@@ -100,8 +100,7 @@ void DistanceQuery::end_wait() {
     if (is_settled(low)) {
         settle(low);
         if (are_all) {
-            queue_.clear();
-            stack_.clear();
+            stop();
         }
         return;
     }
@@ -120,9 +119,11 @@ void DistanceQuery::refine_incumbent() {
     }
     const Incumbent now = incumbent_;
     const Triangle a = a_.triangle(now.a), b = b_.triangle(now.b);
-    ++counts_.exact_triangle_tests;
-    take(measure_finely(a, b, now.features), now.a, now.b);
-    incumbent_ = {now.a, now.b, now.features, true, near_direction(a, b, now.features)};
+    if (!now.is_measured) {
+        ++counts_.exact_triangle_tests;
+        take(measure_finely(a, b, now.features), now.a, now.b);
+    }
+    incumbent_ = {now.a, now.b, now.features, true, true, near_direction(a, b, now.features)};
 }
 
 // As far apart along the direction as the least distance, but for their rounding?

@@ -4,6 +4,7 @@
 #include "primitives/predicates.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -26,6 +27,23 @@ namespace {
     return {b.triangle_a, b.triangle_b};
 }
 
+// The pairs of two blocks by their numbers of triangles, less one.
+constexpr auto kPairs = [] {
+    std::array<std::array<unsigned, 4>, 4> pairs{};
+    for (std::uint32_t a = 0; a < 4; ++a) {
+        for (std::uint32_t b = 0; b < 4; ++b) {
+            pairs[a][b] = pairs_of(a + 1, b + 1);
+        }
+    }
+    return pairs;
+}();
+
+// The least float that is at least a number, or the one after it.
+[[nodiscard]] float float_above(double number) {
+    const auto nearest = static_cast<float>(number);
+    return nearest >= number ? nearest : std::nextafter(nearest, HUGE_VALF);
+}
+
 } // namespace
 
 double DistanceQuery::low_in_unit(double length, int exponent) const {
@@ -36,60 +54,64 @@ double DistanceQuery::high_in_unit(double length, int exponent) const {
     return exponent == 0 && unit_ > 0 ? unit_ * length : scaled_up(length, exponent - exponent_);
 }
 
+void DistanceQuery::keep_unsettled(Candidate candidate, std::span<Candidate> candidates,
+                                   std::uint32_t& kept) {
+    if (is_settled(candidate.low)) {
+        settle(candidate.low);
+    } else {
+        candidates[kept++] = candidate;
+    }
+}
+
+// Those of some pairs that their edges leave, moved to the front.
+std::uint32_t DistanceQuery::keep_by_edges(const TriangleBlock& a, const TriangleBlock& b,
+                                           std::span<Candidate> candidates) {
+    const auto count = static_cast<std::uint32_t>(candidates.size());
+    std::uint32_t kept = 0;
+    for (std::uint32_t first = 0; first < count; first += 4) {
+        PairsInLanes pairs;
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            pairs[k] = candidates[std::min(first + k, count - 1)].pair;
+        }
+        const std::array<double, 4> lows = edge_gaps(a, b, unit_factors_, pairs);
+        for (std::uint32_t k = 0; k < std::min(4U, count - first); ++k) {
+            const Candidate& c = candidates[first + k];
+            keep_unsettled({std::max(c.low, lows[k]), c.pair}, candidates, kept);
+        }
+    }
+    return kept;
+}
+
 // Bounds of several pairs at once leave few to be measured.
 void DistanceQuery::measure_all(const Pair& pair) {
-    std::array<std::array<Triangle, kFew>, 2> world, unit;
-    for (const bool is_a : {true, false}) {
-        const NodeRef& ref = is_a ? pair.a : pair.b;
-        const PosedTree& body = is_a ? a_ : b_;
-        body.tree().prepare_triangles(ref, ref.triangle_count());
-        for (std::uint32_t i = 0; i < ref.triangle_count(); ++i) {
-            const Triangle t = body.triangle(TreeView::triangle_ref(ref, ref.begin + i));
-            world[is_a ? 0 : 1][i] = t;
-            unit[is_a ? 0 : 1][i] = in_unit(t);
-        }
-    }
-    std::array<Candidate, kFew * kFew + 3> candidates;
+    const TriangleBlock& a = blocks_a_.placed(a_, pair.a, unit_factors_);
+    const TriangleBlock& b = blocks_b_.placed(b_, pair.b, unit_factors_);
+    counts_.triangle_tests += std::uint64_t{a.count} * b.count;
+    const float limit = float_above(high_ - slack_);
+    BlockGaps gaps;
+    measure_block(a, b, limit, gaps);
+    const unsigned all = kPairs[a.count - 1][b.count - 1];
+    // Lanes left over hold one of the pairs again.
+    settle(std::max({pair.key, double{gaps.least_of_others}, 0.0}));
+    std::array<Candidate, 16> candidates;
     std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < pair.a.triangle_count(); ++i) {
-        for (std::uint32_t j = 0; j < pair.b.triangle_count(); ++j) {
-            candidates[count++] = {pair.key, i, j};
-        }
+    for (unsigned open = gaps.open & all; open != 0; open &= open - 1) {
+        const auto k = static_cast<std::uint32_t>(std::countr_zero(open));
+        candidates[count++] = {std::max(pair.key, double{gaps.lows[k]}), k};
     }
-    counts_.triangle_tests += count;
-    for (const auto gaps : {quick_gaps, edge_gaps}) {
-        std::uint32_t kept = 0;
-        for (std::uint32_t first = 0; first < count; first += 4) {
-            TriangleLanes a, b;
-            for (std::uint32_t k = 0; k < 4; ++k) {
-                const Candidate& c = candidates[std::min(first + k, count - 1)];
-                a[k] = &unit[0][c.a];
-                b[k] = &unit[1][c.b];
-            }
-            const Gaps lows = gaps(a, b);
-            for (std::uint32_t k = 0; k < std::min(4U, count - first); ++k) {
-                Candidate c = candidates[first + k];
-                c.low = std::max(c.low, lows[k]);
-                if (is_settled(c.low)) {
-                    settle(c.low);
-                } else {
-                    candidates[kept++] = c;
-                }
-            }
-        }
-        count = kept;
-    }
+    count = keep_by_edges(a, b, {candidates.data(), count});
     for (std::uint32_t k = 0; k < count; ++k) {
         const Candidate& c = candidates[k];
         if (is_settled(c.low)) {
             settle(c.low);
-        } else {
-            measure_one({c.low,
-                         TreeView::triangle_ref(pair.a, pair.a.begin + c.a),
-                         TreeView::triangle_ref(pair.b, pair.b.begin + c.b),
-                         {}},
-                        world[0][c.a], world[1][c.b]);
+            continue;
         }
+        const std::uint32_t i = c.pair % 4, j = second_of_pair(c.pair);
+        measure_one({c.low,
+                     TreeView::triangle_ref(pair.a, pair.a.begin + i),
+                     TreeView::triangle_ref(pair.b, pair.b.begin + j),
+                     {}},
+                    lane(a.corners, i), lane(b.corners, j));
     }
 }
 
@@ -115,11 +137,22 @@ void DistanceQuery::measure_one(const Pair& pair, const Triangle& a, const Trian
     add(measured);
 }
 
+// Where a corner is nearest, all triangles around it are as near: the direction of the least
+// distance tells it sooner than each of them. Not of a pair that is to be named rather than the one
+// found: of equal pairs that is the first by its rows.
 void DistanceQuery::refine(const Pair& pair) {
     ++counts_.exact_triangle_tests;
+    const std::pair<std::int64_t, std::int64_t> rows{a_.id(pair.a), b_.id(pair.b)};
+    if (incumbent_.is_measured && rows > ids(best_)) {
+        refine_incumbent();
+        if (const double low = all_apart(pair); is_settled(low)) {
+            settle(low);
+            return;
+        }
+    }
     const TriangleDistance found =
         measure_finely(a_.triangle(pair.a), b_.triangle(pair.b), pair.features);
-    take(found, pair.a, pair.b);
+    incumbent_.is_measured |= take(found, pair.a, pair.b);
     settle(std::max(pair.key, low_in_unit(found.low, found.exponent)));
 }
 
@@ -137,22 +170,32 @@ void DistanceQuery::close(const Pair& pair) {
     }
 }
 
-void DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b) {
+// Whether it is the least now.
+bool DistanceQuery::take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b) {
     const double high = high_in_unit(found.high, found.exponent);
     const DistanceBounds one{0, 0, found.point_a, found.point_b, a_.id(a), b_.id(b)};
-    if (high < high_ || (high == high_ && ids(one) < ids(best_))) {
+    const bool is_least = high < high_ || (high == high_ && ids(one) < ids(best_));
+    if (is_least) {
         high_ = high;
         best_ = one;
-        incumbent_ = {a, b, found.features, false, {}};
+        incumbent_ = {a, b, found.features, false, false, {}};
     }
+    slack_ = slack();
+    return is_least;
 }
 
 void DistanceQuery::touch(const NodeRef& a, const NodeRef& b) {
     const Vec3 point = common_point(a_.triangle(a), b_.triangle(b));
     low_ = high_ = 0;
+    slack_ = slack();
     best_ = {0, 0, point, point, a_.id(a), b_.id(b)};
+    stop();
+}
+
+void DistanceQuery::stop() {
     queue_.clear();
     stack_.clear();
+    openings_[0].count = openings_[1].count = 0;
 }
 
 DistanceBounds DistanceQuery::bounds() const {
@@ -160,6 +203,11 @@ DistanceBounds DistanceQuery::bounds() const {
     low = std::min(low, queue_.next_time());
     for (const Pair& pair : stack_) {
         low = std::min(low, pair.key);
+    }
+    for (const Openings& openings : openings_) {
+        for (std::size_t k = 0; k < openings.count; ++k) {
+            low = std::min(low, openings.pairs[k].pair.key);
+        }
     }
     if (wait_) {
         low = std::min(low, wait_->pair.key);
