@@ -21,6 +21,7 @@ class ViewOptions(NamedTuple):
     view_from: tuple[float, float, float] | None
     zoom: float | None
     size: tuple[int, int] | None
+    overlap: bool
     force: bool
 
 
@@ -77,6 +78,12 @@ view_options = gathered(
             type=Whole(16),
             metavar="W H",
             help=f"Width and height in pixels [default: {SIZE[0]} {SIZE[1]}]; of .png.",
+        ),
+        option(
+            _PICTURE,
+            "--overlap",
+            is_flag=True,
+            help="Draw A and B at t = 0 faintly, and in full what they share, by manifold3d.",
         ),
         option(_PICTURE, "--force", is_flag=True, help="Replace a picture that exists."),
     ),

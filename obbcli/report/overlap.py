@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from obbcli.report.record import answer_document
 from obbcli.report.rows import cost_rows, source_rows
+from obbcli.report.shared_mesh import shared_mesh_rows
 from obbcli.report.table import Table, count, length, point
 
 if TYPE_CHECKING:
@@ -34,15 +35,18 @@ _DEPTHS = {
 _MOST_REGIONS = 8
 
 
-def overlap_record(setting: Setting, asked: Asked, answer: Overlap) -> Record:
+def overlap_record(
+    setting: Setting, asked: Asked, answer: Overlap, command: str = "overlap"
+) -> Record:
     """Return the record of a question.
 
     Args:
         setting: what was asked about.
         asked: what was asked.
         answer: what came out.
+        command: whose document it is.
     """
-    record = answer_document("overlap", setting, overlap_part(answer), answer.stats)
+    record = answer_document(command, setting, overlap_part(answer), answer.stats)
     part = {"tolerance": asked.tolerance, "deeper_than": asked.deeper_than}
     tail = {name: record.pop(name) for name in ("result", "stats")}
     return record | {"asked": part} | tail
@@ -81,6 +85,7 @@ def overlap_tables(record: Record) -> list[Table]:
         *_volume_rows(result),
         *_region_rows(result),
         *_along_rows(result),
+        *shared_mesh_rows(result.get("mesh")),
         ("band", _band(result["band"])),
     ]
     if result["reason"] is not None:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from obbcli.questions.overlap.asked import Asked
 from obbcli.report.contacts import contact_part
 from obbcli.report.first_contact import first_contact_bare, first_contact_tables
+from obbcli.report.overlap import overlap_bare, overlap_record, overlap_tables
 from obbcli.report.record import answer_document, document, seconds_part
 from obbcli.report.rows import source_rows
+from obbcli.report.shared_mesh import drawn_rows, solid_part
 from obbcli.report.table import Table, count, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from obbcli.answers.contact import FirstContact
+    from obbcli.answers.overlap import Overlap
     from obbcli.report.record import Record, Setting, Source
     from obbcli.view.boxes import Boxes
     from obbcli.view.contact import Moment
+    from obbcli.view.shared_solid import SharedSolid
 
 
 class Output(NamedTuple):
@@ -102,6 +107,23 @@ def contact_record(
     return answer_document("view", setting, result, answer.stats)
 
 
+def overlap_view_record(
+    setting: Setting, answer: Overlap, output: Output, solid: SharedSolid
+) -> Record:
+    """Return the record of an overlap's picture: the answer, as `overlap` has it, and more.
+
+    Args:
+        setting: what was asked.
+        answer: what came out.
+        output: where it was drawn.
+        solid: what was drawn in full.
+    """
+    record = overlap_record(setting, Asked(), answer, "view")
+    drawn = output.part() | {"what": "overlap", **solid_part(solid, answer.volume)}
+    record["result"]["drawn"] = drawn
+    return record
+
+
 def marks_of(answer: FirstContact) -> list[str]:
     """Return which fields of an answer are marked in its picture."""
     names = ("point", "normal", "triangle_a", "triangle_b")
@@ -115,6 +137,8 @@ def view_tables(record: Record) -> list[Table]:
     if drawn["what"] == "contact":
         answer = first_contact_tables(record)
         return [*answer, Table([*_contact_rows(drawn), _file_row(drawn)])]
+    if drawn["what"] == "overlap":
+        return [*overlap_tables(record), Table([*drawn_rows(drawn), _file_row(drawn)])]
     where = f"under node {drawn['node']}" if drawn["level"] is None else "of the tree"
     per_depth = ", ".join(f"{count(d['box_count'])} at {d['depth']}" for d in drawn["depths"])
     times = ", ".join(f"{k} {seconds(v)}" for k, v in record["stats"]["seconds"].items())
@@ -129,8 +153,10 @@ def view_tables(record: Record) -> list[Table]:
 
 
 def view_bare(record: Record) -> str:
-    """Return the status and time of a contact, or the number of boxes."""
+    """Return the status and time of a contact, a relation, or the number of boxes."""
     drawn = record["result"]["drawn"]
+    if drawn["what"] == "overlap":
+        return overlap_bare(record)
     if drawn["what"] == "contact":
         return first_contact_bare(record)
     return f"{drawn['box_count']}\n"

@@ -15,8 +15,9 @@ from obbcli.cli.options.two_bodies import (
     refuse_what_moves,
     with_load_time,
 )
-from obbcli.cli.options.words import Finite
+from obbcli.cli.options.words import Finite, PathName
 from obbcli.cli.output import emit
+from obbcli.cli.shared_mesh import check_mesh_file, require_solids, write_shared_mesh
 
 if TYPE_CHECKING:
     from obbcli.cli.inputs import Input
@@ -79,6 +80,13 @@ Examples:
     metavar="R",
     help="With --regions: told apart by boxes of at most R, in mesh units [default: by size].",
 )
+@option(
+    QUESTION,
+    "--mesh",
+    type=PathName(),
+    metavar="FILE",
+    help="Write what both share into a .glb FILE, by manifold3d, not proven [default: do not].",
+)
 @about_two("Exit with 1 where they overlap, or are deeper than O; 0 where not.")
 def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """Do A and B, as solids, touch or overlap, and how deep is one in the other?
@@ -89,17 +97,21 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """
     from obbcli.report.overlap import overlap_bare, overlap_tables
 
-    _refuse_what_says_nothing(asked)
+    refuse_what_says_nothing(asked)
     question = asked.question()
+    mesh_file = flags.pop("mesh")
+    if mesh_file is not None:
+        check_mesh_file(mesh_file, asked.common.output, (asked.a, asked.b))
     wanted = _wanted(flags)
     files = asked.read()
     with naming_options(question):
-        record = _ask(asked, question, files, wanted)
+        record = _ask(asked, question, files, wanted, mesh_file)
     emit(record, overlap_tables, asked.common, bare=overlap_bare)
-    return _exit_code(record, asked=asked.exit_code)
+    limit = record["asked"]["deeper_than"]
+    return overlap_exit_code(record["result"], asked=asked.exit_code, limit=limit)
 
 
-def _refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
+def refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
     """Refuse options that other questions know: to ignore them would make the answer a lie."""
     refuse_what_moves(asked.motion, "overlap")
     for name in asked.accuracy.given():
@@ -129,23 +141,37 @@ def _wanted(flags: dict[str, Any]) -> Asked:
 
 
 def _ask(
-    asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, Input], wanted: Asked
+    asked: TwoBodyOptions,
+    question: QuestionOptions,
+    files: tuple[Input, Input],
+    wanted: Asked,
+    mesh_file: str | None,
 ) -> Record:
-    """Put the question and return its record."""
+    """Put the question, write the mesh that is asked for, and return the record."""
     from obbcli.questions.overlap.overlap import overlap_of
     from obbcli.report.overlap import overlap_record
 
     pair = question.pair(files)
+    if mesh_file is not None:
+        require_solids(pair)
     answer = overlap_of(pair, wanted)
-    return with_load_time(overlap_record(asked.setting(files, pair), wanted, answer), files)
+    record = overlap_record(asked.setting(files, pair), wanted, answer)
+    if mesh_file is not None:
+        record["result"]["mesh"] = write_shared_mesh(mesh_file, pair, answer)
+    return with_load_time(record, files)
 
 
-def _exit_code(record: Record, *, asked: bool) -> int:
-    """Return the exit code of an answer; `asked` is whether overlap has one of its own."""
+def overlap_exit_code(result: Record, *, asked: bool, limit: float | None = None) -> int:
+    """Return the exit code of an answer.
+
+    Args:
+        result: of the record.
+        asked: whether overlap has a code of its own.
+        limit: mesh units; whether a depth exceeds it was asked. None: it was not.
+    """
     from obbcli.answers.overlap import MEETING
 
-    result = record["result"]
-    if record["asked"]["deeper_than"] is None:
+    if limit is None:
         is_open, is_deep = result["relation"] == "unresolved", result["relation"] in MEETING
     else:
         is_open, is_deep = result["deeper"] is None, bool(result["deeper"])

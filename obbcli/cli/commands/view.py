@@ -48,6 +48,7 @@ Examples:
   obbtree view gear.stl --level 4 -o boxes.png
   obbtree view gear.obbt --node 17 -o boxes.html
   obbtree view gear.stl pinion.stl --omega 0 0 3 -o contact.png --zoom 4
+  obbtree view gear.stl pinion.stl --translate-b -0.5 0 0 --overlap -o overlap.html
   obbtree view arm.stl shelf.obj --vel 0 0 -50 --duration 3 -o contact.glb --ghosts 8
 """,
 )
@@ -65,13 +66,16 @@ def command(asked: TwoBodyOptions, how: ViewOptions, solid: bool) -> int:
     A .png is painted without a display, a .html is one file that turns under the mouse and opens
     offline, a .glb is for other viewers. Of two bodies it shows the start and the way there
     faintly, both where they touch, the point, the normal from A to B and the two triangles; where
-    they do not touch, the end. The answer goes to standard output, as first-contact has it.
+    they do not touch, the end. The answer goes to standard output, as first-contact has it. With
+    --overlap it shows what both solids share at t = 0, and answers as overlap does.
     """
     target = _target(asked, how)
     if not asked.b:
         _refuse_questions(asked, how, solid=solid)
         record = _draw_boxes(asked, how, target)
         code = 0
+    elif how.overlap:
+        record, code = _draw_overlap(asked, how, target, solid=solid)
     else:
         record = _draw_contact(asked, how, target, solid=solid)
         code = exit_code(record["result"], asked=asked.exit_code)
@@ -124,6 +128,7 @@ def _refuse_questions(asked: TwoBodyOptions, how: ViewOptions, *, solid: bool) -
     """Refuse what is asked about two bodies where there is one."""
     given = asked.pose._asdict() | asked.motion._asdict() | asked.accuracy._asdict()
     given |= {"solid": solid, "exit_code": asked.exit_code, "ghosts": how.ghosts}
+    given["overlap"] = how.overlap
     given |= {"scale_b": asked.units.scale_b}
     for name, value in given.items():
         if value not in (None, False):
@@ -190,6 +195,49 @@ def _draw_contact(asked: TwoBodyOptions, how: ViewOptions, target: Path, *, soli
     record = contact_record(setting, answer, output, moment)
     record["stats"]["seconds"]["draw"] = time.perf_counter() - start
     return with_load_time(record, files)
+
+
+def _draw_overlap(
+    asked: TwoBodyOptions, how: ViewOptions, target: Path, *, solid: bool
+) -> tuple[Record, int]:
+    """Ask how two solids overlap, draw what they share; return the record and the exit code."""
+    from obbcli.cli.commands.overlap import overlap_exit_code, refuse_what_says_nothing
+    from obbcli.cli.shared_mesh import require_solids
+    from obbcli.view.shared_solid import require_package, shared_solid
+
+    refuse_what_says_nothing(asked)
+    meaningless = {"solid": solid, "ghosts": how.ghosts, "level": how.level, "node": how.node}
+    for name, value in meaningless.items():
+        if value not in (None, False):
+            raise UsageError(f"--{name}", "has no meaning with --overlap", "leave it out")
+    require_package("--overlap")
+    question = asked.question()
+    files = asked.read()
+    with naming_options(question):
+        from obbcli.questions.overlap.asked import Asked
+        from obbcli.questions.overlap.overlap import overlap_of
+
+        pair = question.pair(files)
+        require_solids(pair)
+        answer = overlap_of(pair, Asked())
+        setting = asked.setting(files, pair)
+    from obbcli.report.view import overlap_view_record
+    from obbcli.view.overlap import overlap_picture
+
+    start = time.perf_counter()
+    shared = shared_solid(pair.bodies)
+    a, b = (_base(file) for file in files)
+    title = f"{a} and {b}: {answer.relation}"
+    picture = overlap_picture(pair.bodies, shared if len(shared.triangles) else None, title)
+    legend = [title, f"blue: A, {a}", f"orange: B, {b}", _shared_words(len(shared.triangles))]
+    output = _write(picture, legend, how, target)
+    record = overlap_view_record(setting, answer, output, shared)
+    record["stats"]["seconds"]["draw"] = time.perf_counter() - start
+    return with_load_time(record, files), overlap_exit_code(record["result"], asked=asked.exit_code)
+
+
+def _shared_words(triangle_count: int) -> str:
+    return "red: what both share, not proven" if triangle_count else "they share no solid"
 
 
 def _base(file: Input) -> str:

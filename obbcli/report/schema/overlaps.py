@@ -10,6 +10,7 @@ from obbcli.report.schema.words import (
     AMOUNT,
     COUNT,
     FLAG,
+    NUMBER,
     TEXT,
     Schema,
     documented,
@@ -19,17 +20,44 @@ from obbcli.report.schema.words import (
     ref,
     told,
     tuple_of,
+    word_of,
 )
 from obbcli.scene.overlaps import SceneOverlap
 
 
 def overlap() -> Schema:
     """Return the schema of `obbtree overlap`."""
+    file = {
+        "file": told(or_null(TEXT), "as written; null: there is no shared solid"),
+        "format": word_of(("glb",)),
+        "byte_count": told(or_null(COUNT), "of the file; null where there is none"),
+    }
+    mesh = told(record(file | SHARED_SOLID), "with --mesh")
+    return overlap_document(
+        "overlap", record(overlap_fields() | {"mesh": mesh}, optional=("mesh",))
+    )
+
+
+def overlap_document(name: str, result: Schema) -> Schema:
+    """Return the schema of a document whose result tells of an overlap."""
     asked = {
         "tolerance": told(AMOUNT, "relative width asked of brackets"),
         "deeper_than": told(or_null(AMOUNT), "mesh units; null where it was not asked"),
     }
-    return pair_document("overlap", record(overlap_fields()), stats=_stats(), asked=record(asked))
+    return pair_document(name, result, stats=_stats(), asked=record(asked))
+
+
+SHARED_SOLID: dict[str, Schema] = {
+    "triangle_count": told(COUNT, "of what both share"),
+    "volume": told(NUMBER, "of these triangles, cubed mesh units, not proven"),
+    "off_by": told(
+        or_null(AMOUNT),
+        "cubed mesh units; how far that is from the proven bracket, 0 within; null where nothing "
+        "is proven",
+    ),
+    "is_proven": told(FLAG, "false: manifold3d made it"),
+}
+"""What is said of a mesh of what both share."""
 
 
 def _stats() -> Schema:

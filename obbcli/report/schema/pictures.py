@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from obbcli.report.schema.overlaps import SHARED_SOLID, overlap_document
+from obbcli.report.schema.relations import overlap_fields
 from obbcli.report.schema.shared import (
     CONTACT_FIELDS,
     PART_NAMES,
@@ -39,8 +41,8 @@ _MARKS = ("point", "normal", "triangle_a", "triangle_b")
 
 
 def view() -> Schema:
-    """Return the schema of `obbtree view`: of the boxes of a tree, or of a contact."""
-    return {"oneOf": [_boxes(), _contact()]}
+    """Return the schema of `obbtree view`: of the boxes of a tree, a contact, or an overlap."""
+    return {"oneOf": [_boxes(), _contact(), _overlap()]}
 
 
 def _boxes() -> Schema:
@@ -73,3 +75,8 @@ def _contact() -> Schema:
         record(CONTACT_FIELDS | PART_NAMES | {"drawn": record(drawn)}, optional=PART_NAMES),
         solid=told(FLAG, "whether a body inside the other counts as contact"),
     )
+
+
+def _overlap() -> Schema:
+    drawn = record(_FILE | {"what": {"const": "overlap"}, **SHARED_SOLID})
+    return overlap_document("view", record(overlap_fields() | {"drawn": drawn}))
