@@ -24,11 +24,12 @@ namespace {
 
 } // namespace
 
-RayCrossing ray_crossing(const Triangle& t, const Vec3& p) {
+RayCrossing ray_crossing(const Triangle& t, const Vec3& p, bool is_down) {
     RayCrossing crossing;
     if (p.x < smallest(t[0].x, t[1].x, t[2].x) || p.x > largest(t[0].x, t[1].x, t[2].x) ||
         p.y < smallest(t[0].y, t[1].y, t[2].y) || p.y > largest(t[0].y, t[1].y, t[2].y) ||
-        p.z > largest(t[0].z, t[1].z, t[2].z)) {
+        (is_down ? p.z < smallest(t[0].z, t[1].z, t[2].z)
+                 : p.z > largest(t[0].z, t[1].z, t[2].z))) {
         return crossing;
     }
     crossing.is_tested = true;
@@ -45,7 +46,8 @@ RayCrossing ray_crossing(const Triangle& t, const Vec3& p) {
         // p, which is not on the triangle, is above or below by more than it was moved.
         const Orientation height = orientation(t[0], t[1], t[2], p);
         crossing.is_exact = crossing.is_exact || height.exact;
-        crossing.turn = height.sign == -turn ? turn : 0;
+        crossing.turn =
+            is_down ? (height.sign == turn ? -turn : 0) : (height.sign == -turn ? turn : 0);
     }
     return crossing;
 }

@@ -29,6 +29,14 @@ SolidSurface::SolidSurface(const TreeView& tree, const Pose& pose, const Overlap
     skew_ = 4 * skew_of(pose.rotation) + 64 * kUnitRoundoff;
 }
 
+SolidSurface::PlacedBox SolidSurface::place(const Node& node) const {
+    PlacedBox placed{body_.box(node), {blur_, blur_, blur_}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        placed.reach = placed.reach + placed.box.half_extents[i] * abs(placed.box.axes[i]);
+    }
+    return placed;
+}
+
 Triangle SolidSurface::triangle(const NodeRef& ref) const {
     Triangle t = body_.triangle(ref);
     for (Vec3& corner : t) {

@@ -23,17 +23,23 @@ class SolidSurface {
     // A box in the frame, at most 1 + 2 skew() long axes. What it holds, the posed vertices rounded
     // to double, may stick out of it by blur() along any axis of the frame or of the box.
     [[nodiscard]] Obb box(const Node& node) const { return body_.box(node); }
-    // The same of a node that is no triangle; valid until the next one is asked for. Searches come
-    // by the same boxes again and again, and to turn one takes longer than to look at it: those
-    // looked at last are kept.
-    [[nodiscard]] const Obb& box(const NodeRef& ref) const {
+    // The same of a node that is no triangle, and how far it reaches from its centre along the axes
+    // of the frame, blur included; valid until the next one is asked for. Searches come by the same
+    // boxes again and again, and to turn one takes longer than to look at it: those looked at last
+    // are kept.
+    struct PlacedBox {
+        Obb box;
+        Vec3 reach;
+    };
+    [[nodiscard]] const PlacedBox& placed(const NodeRef& ref) const {
         Kept& kept = kept_[ref.slot % kept_.size()];
         if (kept.slot != ref.slot) {
-            kept.box = body_.box(tree().node(ref)); // before the slot: it may throw
+            kept.placed = place(tree().node(ref)); // before the slot: it may throw
             kept.slot = ref.slot;
         }
-        return kept.box;
+        return kept.placed;
     }
+    [[nodiscard]] const Obb& box(const NodeRef& ref) const { return placed(ref).box; }
     [[nodiscard]] double blur() const { return blur_; }
     // How far the pose's matrix is from orthonormal, and rounding.
     [[nodiscard]] double skew() const { return skew_; }
@@ -50,9 +56,10 @@ class SolidSurface {
     static constexpr std::uint32_t kMostKept = 2048;
     static constexpr std::uint32_t kNoSlot = 0xffffffff;
     struct Kept {
-        Obb box;
+        PlacedBox placed;
         std::uint32_t slot = kNoSlot;
     };
+    [[nodiscard]] PlacedBox place(const Node& node) const;
 
     PosedTree body_;
     OverlapFrame frame_;

@@ -12,14 +12,45 @@ namespace obb {
 
 namespace {
 
-// Whether the ray from the point towards +z may meet what the box holds. A NaN does.
-[[nodiscard]] bool may_be_met(const Obb& box, const Vec3& point, double blur) {
-    const Vec3 d = point - box.center;
-    Vec3 reach{blur, blur, blur};
-    for (std::size_t i = 0; i < 3; ++i) {
-        reach = reach + box.half_extents[i] * abs(box.axes[i]);
+using PlacedBox = SolidSurface::PlacedBox;
+
+// A ray along an axis of the world, one way or the other.
+struct Ray {
+    std::size_t axis = 2;
+    bool is_down = false;
+
+    // Whether it may meet, from a point on, what the box holds. A NaN does.
+    [[nodiscard]] bool may_meet(const PlacedBox& placed, const Vec3& point) const {
+        const Vec3 d = point - placed.box.center;
+        const double along = is_down ? -d[axis] : d[axis];
+        const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+        return !(std::fabs(d[i]) > placed.reach[i] || std::fabs(d[j]) > placed.reach[j] ||
+                 along > placed.reach[axis]);
     }
-    return !(std::fabs(d.x) > reach.x || std::fabs(d.y) > reach.y || d.z > reach.z);
+    // With the axis for the last coordinate.
+    [[nodiscard]] Vec3 turned(const Vec3& v) const {
+        return {v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]};
+    }
+    [[nodiscard]] Triangle turned(const Triangle& t) const {
+        return {turned(t[0]), turned(t[1]), turned(t[2])};
+    }
+};
+
+// The ray that leaves the box around all soonest comes by the fewest boxes.
+[[nodiscard]] Ray shortest_ray(const PlacedBox& root, const Vec3& point) {
+    Ray best;
+    double least = HUGE_VAL;
+    const Vec3 d = point - root.box.center;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const bool is_down : {false, true}) {
+            const double way = root.reach[axis] + (is_down ? d[axis] : -d[axis]);
+            if (way < least) {
+                least = way;
+                best = {axis, is_down};
+            }
+        }
+    }
+    return best;
 }
 
 [[nodiscard]] bool is_on(const Triangle& t, const Vec3& p) {
@@ -39,10 +70,16 @@ Winding WindingSearch::find(const Vec3& world) {
     Winding winding;
     const TreeView& tree = surface_->tree();
     const Vec3 place = surface_->frame().to_frame(world);
+    if (tree.root().is_triangle()) {
+        winding.is_on_surface = is_on(surface_->world_triangle(tree.root()), world);
+        return winding;
+    }
+    const Ray ray = shortest_ray(surface_->placed(tree.root()), place);
+    const Vec3 from = ray.turned(world);
     const auto count = [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t k = begin; k < end; ++k) {
             const Triangle t = surface_->world_triangle({k, k + 1, 0, 0});
-            winding.number += ray_crossing(t, world).turn;
+            winding.number += ray_crossing(ray.turned(t), from, ray.is_down).turn;
             winding.is_on_surface = winding.is_on_surface || is_on(t, world);
         }
     };
@@ -55,7 +92,7 @@ Winding WindingSearch::find(const Vec3& world) {
             continue;
         }
         const Node& node = tree.node(ref);
-        if (!may_be_met(surface_->box(ref), place, surface_->blur())) {
+        if (!ray.may_meet(surface_->placed(ref), place)) {
             continue;
         }
         tree.prepare(ref);
