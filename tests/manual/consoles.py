@@ -20,6 +20,7 @@ VARYING = re.compile(
     # What something took, and not at what time of the motion (`t = 0.5 s`) it is.
     r"(?<!t = )(?<![\d.])\b\d+(\.\d+)?(e-\d+)? (us|ms|s)\b|(?<=box tests )[\d,]+"
     r"|(?<=triangle tests )[\d,]+( \(\S+ in exact)?"
+    r"|(?<=cells )[\d,]+ \([\d,]+ points, [\d,]+ rays\)"
     r"|(?:(?<=boxes built )|(?<=of A, ))[\d,]+(?= of)"
 )
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError, writing
-from obbcli.cli.inputs import STDIN, keep_inputs, read_shape
+from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import (
     Command,
@@ -27,17 +27,21 @@ from obbcli.cli.options.placement import (
     pose_options,
     unit_options,
 )
-from obbcli.cli.options.two_bodies import QUESTION, naming_options
+from obbcli.cli.options.two_bodies import QUESTION, naming_options, refuse_what_moves
 from obbcli.cli.options.words import Finite, PathName
 from obbcli.cli.output import emit, remark, tell_interrupted
 from obbcli.cli.plot import check_plot
 from obbcli.cli.progress import measuring
+from obbcli.cli.unbuilt import read_unbuilt
+from obbcli.study.asks import ASKS
 
 if TYPE_CHECKING:
     from obbcli.mesh import Mesh
     from obbcli.motion.body import Body
     from obbcli.report.record import Record, Source
     from obbcli.report.tradeoff import Wording
+    from obbcli.study.asks import Ask
+    from obbcli.study.tradeoff.at_rest import RestStudy
     from obbcli.study.tradeoff.measuring import Study
     from obbcli.tree.tree import ObbTree
 
@@ -50,6 +54,7 @@ class _Wanted(NamedTuple):
     max_gap: float | None
     max_time: float | None
     plot: str | None
+    ask: Ask
 
 
 class _TradeoffOptions(NamedTuple):
@@ -109,6 +114,14 @@ _wanted_options = gathered(
             metavar="FILE",
             help="Draw error against time into FILE, .svg or .png; needs matplotlib.",
         ),
+        option(
+            QUESTION,
+            "--ask",
+            type=click.Choice(ASKS),
+            default=ASKS[0],
+            show_default=True,
+            help="Which question; all but first-contact are about t = 0.",
+        ),
     ),
 )
 
@@ -122,6 +135,7 @@ Examples:
   obbtree tradeoff gear.stl pinion.stl --omega 0 0 3 --omega-b 0 0 -5.9 --duration 2
   obbtree tradeoff gear.stl pinion.stl --omega 0 0 3 --max-error 1e-6 --budget 20
   obbtree tradeoff arm.stl shelf.obj --vel 0 0 -50 --plot trade.svg --json > trade.json
+  obbtree tradeoff pin.stl plate.stl --ask overlap --max-time 0.1
 """,
 )
 @gathered(
@@ -147,67 +161,56 @@ def command(asked: _TradeoffOptions) -> int:
     accuracy options is measured as well. Trees (.obbt) are used as they are. Ctrl-C prints what was
     measured by then.
     """
+    if asked.wanted.ask != "first-contact":
+        _refuse_beside_rest(asked)
     question = QuestionOptions.of(asked.pose, asked.motion, asked.accuracy)
     keep_inputs(asked.common.output, (asked.a, asked.b))
     if asked.wanted.plot is not None:
         check_plot(asked.wanted.plot, asked.common.output, (asked.a, asked.b))
-    shapes, sources = _read(asked)
+    shapes, sources = read_unbuilt(
+        (asked.a, asked.b), asked.units, asked.common, verify=not asked.no_verify
+    )
     with naming_options(question):
-        study = _study(question, shapes, asked.wanted.budget)
+        study = _study(question, shapes, asked.wanted)
         is_interrupted = _run(study, asked)
+    if asked.wanted.ask != "first-contact":
+        from obbcli.cli.tradeoff_at_rest import answer_at_rest
+
+        words = _words(asked), asked.wanted.max_time
+        return answer_at_rest(
+            study, (asked.a, asked.b), sources, words, asked.common, is_interrupted=is_interrupted
+        )
     record = _record(asked, study, sources, is_interrupted=is_interrupted)
     _show(record, asked)
     return _exit_code(record["result"])
 
 
-def _read(
-    asked: _TradeoffOptions,
-) -> tuple[tuple[Mesh | ObbTree, Mesh | ObbTree], tuple[Source, Source]]:
-    """Return A and B, and what a record says of them."""
-    from obbcli.cli.lengths import shared_sag
-    from obbcli.files import file_of, stamp_of
-    from obbcli.report.record import Source, file_sha256
-    from obbcli.report.rows import about_units
-
-    if asked.a == asked.b == STDIN:
-        raise UsageError("B", "is standard input, and so is A", "name a file for one of them")
-    found: dict[object, tuple[Mesh | ObbTree, Source]] = {}
-    units = asked.units.of_a(), asked.units.of_b()
-    own_a, own_b = shared_sag((asked.a, asked.b), units)
-    keys = (asked.a, own_a), (asked.b, own_b)
-    for key in keys:
-        name, own = key
-        if key in found:
-            continue
-        stamp = stamp_of(file_of(name))
-        sag = None if own is None else own.sag
-        shape, digest = read_shape(name, verify=not asked.no_verify, sag=sag)
-        shape = shape if own is None else own.measured(shape, name)
-        if digest is None and asked.common.json:
-            digest = file_sha256(file_of(name), stamp)
-        source = Source.of(name, digest, shape)
-        more = () if own is None else own.remarks
-        found[key] = shape, source._replace(notes=(*source.notes, *more))
-    (a, source_a), (b, source_b) = found[keys[0]], found[keys[1]]
-    if asked.common.quiet:
-        return (a, b), (source_a, source_b)
-    return (a, b), about_units((source_a, source_b), (a, b))
+def _refuse_beside_rest(asked: _TradeoffOptions) -> None:
+    """Refuse what says nothing about bodies at rest."""
+    wanted = asked.wanted
+    refuse_what_moves(asked.motion, wanted.ask)
+    for name in ("max_error", "max_gap", "plot"):
+        if getattr(wanted, name) is not None:
+            fault = f"is about times of contact, and {wanted.ask} has none"
+            raise UsageError("--" + name.replace("_", "-"), fault, "leave it out")
 
 
 def _study(
-    question: QuestionOptions, shapes: tuple[Mesh | ObbTree, Mesh | ObbTree], budget: float
-) -> Study:
+    question: QuestionOptions, shapes: tuple[Mesh | ObbTree, Mesh | ObbTree], wanted: _Wanted
+) -> Any:
+    """Return the study of the question that is asked, a `Study` or a `RestStudy`."""
     from obbcli.motion.body import Body
-    from obbcli.study.tradeoff.measuring import Study
+    from obbcli.study.tradeoff.tradeoff import study_of
 
     a, b = (
         Body(shape, pose, motion)
         for shape, pose, motion in zip(shapes, question.poses, question.motions, strict=True)
     )
-    return Study(a, b, question.duration, question.accuracy, budget=budget)
+    duration = question.duration if wanted.ask == "first-contact" else None
+    return study_of(a, b, duration, question.accuracy, ask=wanted.ask, budget=wanted.budget)
 
 
-def _run(study: Study, asked: _TradeoffOptions) -> bool:
+def _run(study: Study | RestStudy, asked: _TradeoffOptions) -> bool:
     """Measure; return whether Ctrl-C ended it.
 
     Raises:
@@ -246,7 +249,15 @@ def _record(
 def _wording(asked: _TradeoffOptions, bodies: tuple[Body, Body]) -> Wording:
     """Return what command lines repeat of this one."""
     from obbcli.mesh import Mesh
-    from obbcli.report.tradeoff import Wording, number
+    from obbcli.report.tradeoff import Wording
+
+    are_trees = (not isinstance(bodies[0].shape, Mesh), not isinstance(bodies[1].shape, Mesh))
+    return Wording((asked.a, asked.b), are_trees, _words(asked))
+
+
+def _words(asked: _TradeoffOptions) -> list[str]:
+    """Return the options that place and move the bodies, as command lines repeat them."""
+    from obbcli.report.tradeoff import number
 
     words = []
     for name, value in (asked.pose._asdict() | asked.motion._asdict()).items():
@@ -255,8 +266,7 @@ def _wording(asked: _TradeoffOptions, bodies: tuple[Body, Body]) -> Wording:
         words.append(f"--{name.replace('_', '-')}")
         if value is not True:
             words += [number(part) for part in (value if isinstance(value, tuple) else (value,))]
-    are_trees = (not isinstance(bodies[0].shape, Mesh), not isinstance(bodies[1].shape, Mesh))
-    return Wording((asked.a, asked.b), are_trees, words)
+    return words
 
 
 def _show(record: Record, asked: _TradeoffOptions) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from obbcli import kernels
 from obbcli.answers.overlap import Volume
+from obbcli.motion.pose import Pose
 
 if TYPE_CHECKING:
     from obbcli.answers.overlap import Bounds
@@ -19,6 +20,11 @@ if TYPE_CHECKING:
 
 # Pops between two looks at the clock: a pair of shadows takes longer than a pair of boxes.
 _POPS_A_SLICE = 4096
+# Up to so many the whole of a solid is looked at, once; of larger ones what is near each pair.
+_MOST_TRIANGLES = 20_000
+_REMEMBERED = "_is_plain"
+_AS_LOADED = Pose().kernel
+_PLAIN = 0.0, 0.0
 
 
 class SharedSpace:
@@ -63,13 +69,34 @@ class SharedSpace:
             x, y, z = (value - reach for value in low)
             u, v, w = (value + reach for value in high)
             box = (x, y, z), (u, v, w)
-            of_a, of_b = (self._excess(place, box) for place in (0, 1))
+            of_a, of_b = (
+                _PLAIN if self._is_plain_all_over(place) else self._excess(place, box)
+                for place in (0, 1)
+            )
             self._known[reach] = None if of_a is None or of_b is None else (of_a, of_b)
         return self._known[reach]
 
+    def _is_plain_all_over(self, place: int) -> bool:
+        """Return whether a solid of no many triangles overlaps itself nowhere; trees remember it.
+
+        How it is placed makes no difference beyond the rounding of its vertices.
+        """
+        tree = self._pair.trees[place]
+        if tree.triangle_count > _MOST_TRIANGLES:
+            return False
+        remembered = vars(tree)
+        if _REMEMBERED not in remembered:
+            excess = self._excess_of(kernels.SelfOverlap(tree.kernel, _AS_LOADED))
+            if excess is None:
+                return False
+            remembered[_REMEMBERED] = excess[0] <= 0
+        return bool(remembered[_REMEMBERED])
+
     def _excess(self, place: int, box: _Box) -> Bounds | None:
         body, tree = self._pair.bodies[place], self._pair.trees[place]
-        query = kernels.SelfOverlap(tree.kernel, body.pose.kernel, box)
+        return self._excess_of(kernels.SelfOverlap(tree.kernel, body.pose.kernel, box))
+
+    def _excess_of(self, query: kernels.SelfOverlap) -> Bounds | None:
         is_known = self._pursuit.run(query, lambda: query.counts()[3], _POPS_A_SLICE)
         self._pursuit.count(query.counts())
         return query.excess if is_known else None

@@ -33,6 +33,7 @@ from obbcli.report.schema.words import (
 )
 from obbcli.study.asks import ASKS
 from obbcli.study.stability.rows import Outcome, RestRow, Row
+from obbcli.study.tradeoff.at_rest import RestTrial
 from obbcli.study.tradeoff.trials import Timing, Trial
 
 _COMMAND = told(TEXT, "the command line that asks with this setting")
@@ -64,7 +65,50 @@ def tradeoff() -> Schema:
     }
     budget = told(AMOUNT, "s that it was allowed")
     stats = record({"budget": budget, "seconds": SECONDS})
-    return pair_document("tradeoff", record(result), stats=stats)
+    either = {"anyOf": [record(result), record(_rest_tradeoff())]}
+    return pair_document("tradeoff", either, stats=stats)
+
+
+def _rest_tradeoff() -> dict[str, Schema]:
+    """Return the fields of what a tolerance costs of a question about t = 0."""
+    row = documented(
+        RestTrial,
+        {
+            "command": _COMMAND,
+            "options": told(list_of(TEXT), "of that command line, beside those of the bodies"),
+            "relation": or_null(word_of(get_args(RelationWord))),
+            "bounds": table_of(tuple_of(AMOUNT, or_null(AMOUNT)), "by the names of the numbers"),
+            "width": or_null(AMOUNT),
+            "claims_checked": COUNT,
+            "faults": list_of(TEXT),
+            "warm_seconds": told(record(_timing()), "s a call"),
+            "on_front": FLAG,
+        },
+    )
+    return {
+        "ask": told(word_of(ASKS[1:]), "which question"),
+        "reference": told(studied_answer(), "The narrowest answer, that others are held against."),
+        "rows": told(list_of(record(row)), "the settings that were measured"),
+        "unreached": told(list_of(TEXT), "command lines that the budget did not reach"),
+        "recommended": told(_ROW_NUMBER, "the narrowest row within --max-time; null without"),
+        "claims_checked": told(COUNT, "of all rows"),
+        "claims_broken": told(COUNT, "of them, that turned out untrue: should be 0"),
+        "interrupted": told(FLAG, "whether Ctrl-C ended it"),
+    }
+
+
+def _timing() -> dict[str, Schema]:
+    """Return the fields of how long calls took."""
+    return documented(
+        Timing,
+        {
+            "median": AMOUNT,
+            "low_quartile": AMOUNT,
+            "high_quartile": AMOUNT,
+            "interval": or_null(tuple_of(AMOUNT, AMOUNT)),
+            "rounds": COUNT,
+        },
+    )
 
 
 _AS_THEY_CAME = {"type": "object", "maxProperties": 0, "description": "The trees as they came."}
@@ -89,16 +133,6 @@ _RECOMMENDED = record(
 
 def _trial() -> dict[str, Schema]:
     """Return the fields of a setting that was measured."""
-    timing = documented(
-        Timing,
-        {
-            "median": AMOUNT,
-            "low_quartile": AMOUNT,
-            "high_quartile": AMOUNT,
-            "interval": or_null(tuple_of(AMOUNT, AMOUNT)),
-            "rounds": COUNT,
-        },
-    )
     measured = documented(
         Trial,
         {
@@ -119,7 +153,7 @@ def _trial() -> dict[str, Schema]:
             "verdict_wrong": told(FLAG, "whether it says contact where there is none, or none"),
             "box_tests": COUNT,
             "triangle_tests": COUNT,
-            "warm_seconds": told(record(timing), "s a call"),
+            "warm_seconds": told(record(_timing()), "s a call"),
         }
         | measured
     )
