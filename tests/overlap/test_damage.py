@@ -37,6 +37,9 @@ def queries(a: ObbTree, pose_a: Pose, b: ObbTree, pose_b: Pose) -> Iterator[Any]
     yield lambda: kernels.ProtrusionQuery(*bodies, **asked)
     yield lambda: kernels.ProtrusionQuery(*bodies, **asked, inside_only=False)
     yield lambda: kernels.ProtrusionQuery(*bodies, **asked, deeper_than=0.1)
+    yield lambda: kernels.OverlapRegions(*bodies, **asked, resolution=0.1)
+    yield lambda: kernels.ColumnVolume(*bodies)
+    yield lambda: kernels.SelfOverlap(*bodies[:2])
 
 
 def outcomes(damaged: ObbTree, good: ObbTree) -> Iterator[str]:
@@ -51,9 +54,23 @@ def outcomes(damaged: ObbTree, good: ObbTree) -> Iterator[str]:
             except kernels.TreeError:
                 yield "refused"
             else:
-                assert query.cells <= MOST_CELLS
-                assert query.bounds[0] <= query.bounds[1]
+                require_sound(query)
                 yield "answered"
+
+
+def require_sound(query: Any) -> None:
+    """Require that a finished query kept its limit, and that its brackets are brackets."""
+    if isinstance(query, kernels.OverlapRegions):
+        for low, high, _, thickness, _, _ in query.regions:
+            assert thickness[0] <= thickness[1]
+            assert all(x <= y for x, y in zip(low, high, strict=True))
+        return
+    if isinstance(query, kernels.SelfOverlap):
+        brackets = query.volume, query.excess
+    else:
+        brackets = (query.bounds,)
+    assert all(low <= high for low, high in brackets)
+    assert getattr(query, "cells", 0) <= MOST_CELLS
 
 
 def hurt(data: bytearray, start: int, random: np.random.Generator) -> None:
@@ -114,3 +131,23 @@ def test_box_that_is_no_number_hides_nothing(tmp_path: Path, inside_only: bool) 
                 found = protrusion(a, b, inside_only=inside_only, max_cells=500).bounds
                 assert found[0] <= high
                 assert low <= found[1]
+
+
+def test_box_that_is_no_number_hides_no_volume(tmp_path: Path) -> None:
+    block, tip = box((0, 0, 0), (2, 2, 2)), box((0.5, 0.5, 1.5), (1, 1, 5))
+    data = file_of(block, tmp_path)
+    start = FIXED.unpack_from(data)[2]
+    other = ObbTree.build(Mesh(*tip)).kernel
+
+    for slot in range(11):
+        for offset in (0, 8, 24, 36, 40):
+            damaged = bytearray(data)
+            struct.pack_into(
+                "<d" if offset < 24 else "<f", damaged, start + 64 * slot + offset, np.nan
+            )
+            tree = ObbTree.from_bytes(bytes(damaged), verify=False).kernel
+            query = kernels.ColumnVolume(tree, Pose().kernel, other, Pose().kernel)
+            while not query.advance(ANY_NUMBER):
+                pass
+            low, high = query.bounds
+            assert low <= 0.125 <= high
