@@ -30,10 +30,6 @@ OBB_INLINE Lanes3<Real> across(const Lanes3<Real>& own) {
     return {across(own[0]), across(own[1]), across(own[2])};
 }
 
-double drift_error(const MovingFrame& frame) {
-    return frame.relative * norm_1(frame.closing_velocity);
-}
-
 template <typename Real>
 OBB_INLINE Real radius_along(const Lanes3<Real>& h, const Lanes3<Real>& n, const Axes<Real>& axes) {
     return h[0] * magnitude(inner(n, axes[0])) + h[1] * magnitude(inner(n, axes[1])) +
@@ -45,14 +41,6 @@ template <typename Real, typename Of>
 OBB_INLINE auto each(const std::array<Real, 3>& all, const Of& of) {
     return std::array{of(all[0]), of(all[1]), of(all[2])};
 }
-
-// What only bounds by whole circles need.
-template <typename Real>
-struct Circles {
-    Lanes3<Real> middle; // of the centre's
-    Real span;           // reach of the boxes along their spin axes
-    typename Real::Mask is_still;
-};
 
 // What all axes need of the boxes whose axes they are.
 template <typename Real>
@@ -75,7 +63,8 @@ struct Facing {
     Lanes3<Real> spin_axis;
     Lanes3<Real> pivots, drift;     // from own pivot to the other, and its velocity
     Lanes3<Real> between, velocity; // the same of the centres
-    Real pull, error, velocity_error;
+    Real pull, error, velocity_error, drift_error;
+    double skew; // bounds how far from orthonormal the axes of either are
 };
 
 // One axis a lane; what the own boxes add along it is known.
@@ -85,10 +74,12 @@ struct OwnReach {
     Real lever_square; // |n x k|^2 of the own spin axis k, rounded up
 };
 
-// Where the two end along an axis, and how far they reach around their spins.
+// Where the two end along an axis, how far they reach around their spins, and the step by
+// parabolas.
 template <typename Real>
 struct Ends {
     Real offset, width, other_width, along_other, lever, other_lever;
+    Real step;
 };
 
 template <typename Real>
@@ -124,19 +115,6 @@ OBB_INLINE Own<Real> own_of(const LaneMotion& motion, const PlacedBoxes& boxes) 
 }
 
 template <typename Real>
-OBB_INLINE Circles<Real> circles_of(const Own<Real>& own) {
-    const Lanes3<Real>& h = own.half_extents;
-    const auto is_still = own.speed <= Real{};
-    const Real along = inner(own.spin_axis, own.center);
-    return {{select(is_still, own.center[0], along * own.spin_axis[0]),
-             select(is_still, own.center[1], along * own.spin_axis[1]),
-             select(is_still, own.center[2], along * own.spin_axis[2])},
-            h[0] * magnitude(own.along_spin[0]) + h[1] * magnitude(own.along_spin[1]) +
-                h[2] * magnitude(own.along_spin[2]),
-            is_still};
-}
-
-template <typename Real>
 OBB_INLINE Facing<Real> facing(const Own<Real>& own, const LaneMotion& motion,
                                const MovingFrame& frame) {
     const auto other = [](const auto& lanes)
@@ -147,6 +125,7 @@ OBB_INLINE Facing<Real> facing(const Own<Real>& own, const LaneMotion& motion,
     const Real slant = Real(4.0 * motion.skew) * (own.extents + other(own.extents));
     const Real rounding = Real(frame.relative) * sizes + slant;
     const Real speeds = own.speed + other(own.speed);
+    const Real drift_error(frame.relative * norm_1(frame.closing_velocity));
     return {other(own.half_extents),
             each(own.axes, other),
             each(own.velocity, other),
@@ -157,31 +136,58 @@ OBB_INLINE Facing<Real> facing(const Own<Real>& own, const LaneMotion& motion,
             sum(difference(other(own.center_velocity), own.center_velocity), drift),
             other(own.pull),
             rounding + Real(frame.absolute),
-            speeds * rounding + Real(drift_error(frame))};
+            speeds * rounding + drift_error,
+            drift_error,
+            motion.skew};
 }
 
-// The bound by whole circles along n, where a gap of them is open; else the shorter step h.
+// What only bounds by whole circles need.
 template <typename Real>
-OBB_INLINE Real circle_step(const Lanes3<Real>& n, const Real& h, const Ends<Real>& ends,
-                            const Own<Real>& own, const Facing<Real>& f, const MovingFrame& frame) {
-    const Circles<Real> circles = circles_of(own);
-    const Lanes3<Real> ways = sum(difference(across(circles.middle), circles.middle), f.pivots);
+struct Circles {
+    Lanes3<Real> ways;     // from the middle of the centre's circle to that of the other's
+    Real span, other_span; // reach of the boxes along their spin axes
+    typename Real::Mask is_still, other_is_still;
+    bool matter = false; // whether the motion is so long that they are asked for
+};
+
+template <typename Real>
+OBB_INLINE Circles<Real> circles_of(const Own<Real>& own, const Facing<Real>& f) {
+    const Lanes3<Real>& h = own.half_extents;
+    const auto is_still = own.speed <= Real{};
+    const Real along = inner(own.spin_axis, own.center);
+    const Lanes3<Real> middle{select(is_still, own.center[0], along * own.spin_axis[0]),
+                              select(is_still, own.center[1], along * own.spin_axis[1]),
+                              select(is_still, own.center[2], along * own.spin_axis[2])};
+    const Real span = h[0] * magnitude(own.along_spin[0]) + h[1] * magnitude(own.along_spin[1]) +
+                      h[2] * magnitude(own.along_spin[2]);
+    return {sum(difference(across(middle), middle), f.pivots),
+            span,
+            across(span),
+            is_still,
+            across(own.speed) <= Real{},
+            true};
+}
+
+// The longer step, by whole circles or by parabolas, where circles leave a gap open along n.
+template <typename Real>
+OBB_INLINE Real circle_step(const Lanes3<Real>& n, const Ends<Real>& ends, const Own<Real>& own,
+                            const Facing<Real>& f, const Circles<Real>& circles) {
     const Real own_circle =
         select(circles.is_still, ends.width,
                magnitude(inner(n, own.spin_axis)) * circles.span + own.radius * ends.lever);
-    const Real other_circle = select(across(own.speed) <= Real{}, ends.other_width,
-                                     magnitude(ends.along_other) * across(circles.span) +
+    const Real other_circle = select(circles.other_is_still, ends.other_width,
+                                     magnitude(ends.along_other) * circles.other_span +
                                          across(own.radius) * ends.other_lever);
-    const Real gap = flipped(inner(n, ways), ends.offset) - own_circle - other_circle - f.error;
-    const Real drift = flipped(inner(n, f.drift), ends.offset) - Real(drift_error(frame));
+    const Real gap =
+        flipped(inner(n, circles.ways), ends.offset) - own_circle - other_circle - f.error;
+    const Real drift = flipped(inner(n, f.drift), ends.offset) - f.drift_error;
     const Real still = closing_time(gap, drift, Real{});
-    return select(gap > Real{}, upper(still, h), h);
+    return select(gap > Real{}, upper(still, ends.step), ends.step);
 }
 
 template <typename Real>
 OBB_INLINE Real step_along(const Lanes3<Real>& n, const OwnReach<Real>& reach, const Own<Real>& own,
-                           const Facing<Real>& f, const LaneMotion& motion,
-                           const MovingFrame& frame, bool is_long) {
+                           const Facing<Real>& f, const Circles<Real>& circles) {
     const Real zero{};
     const Real offset = inner(n, f.between);
     const Real other_width = radius_along(f.half_extents, n, f.axes);
@@ -193,15 +199,16 @@ OBB_INLINE Real step_along(const Lanes3<Real>& n, const OwnReach<Real>& reach, c
     const Real w = flipped(inner(n, f.velocity), offset) - reach.velocity_spread -
                    radius_along(f.half_extents, n, f.box_velocity) - f.velocity_error;
     const Real along_other = inner(n, f.spin_axis);
-    const Real other_square = Real(1.0 + 0x1p-48 + motion.skew) - along_other * along_other;
+    const Real other_square = Real(1.0 + 0x1p-48 + f.skew) - along_other * along_other;
     const Real lever = root_of(select(reach.lever_square > zero, reach.lever_square, zero));
     const Real other_lever = root_of(select(other_square > zero, other_square, zero));
-    Real h = closing_time(gap, w, own.pull * lever + f.pull * other_lever);
-    if (is_long) {
-        h = circle_step(n, h, {offset, reach.width, other_width, along_other, lever, other_lever},
-                        own, f, frame);
+    Real step = closing_time(gap, w, own.pull * lever + f.pull * other_lever);
+    if (circles.matter) {
+        step = circle_step(
+            n, {offset, reach.width, other_width, along_other, lever, other_lever, step}, own, f,
+            circles);
     }
-    return select(is_open, h, zero);
+    return select(is_open, step, zero);
 }
 
 // Each lane of the pairs says what its own box's axes prove; the longest of both is the pair's.
@@ -209,6 +216,7 @@ template <typename Real>
 OBB_INLINE Real longest_step(const Own<Real>& own, const LaneMotion& motion,
                              const MovingFrame& frame, bool is_long) {
     const Facing<Real> f = facing(own, motion, frame);
+    const Circles<Real> circles = is_long ? circles_of(own, f) : Circles<Real>{};
     const Lanes3<Real>& h = own.half_extents;
     Real longest{};
     unrolled<3>([&](auto k) __attribute__((always_inline)) {
@@ -220,11 +228,11 @@ OBB_INLINE Real longest_step(const Own<Real>& own, const LaneMotion& motion,
             own.speed *
                 (h[k1] * magnitude(own.along_spin[k2]) + h[k2] * magnitude(own.along_spin[k1])),
             Real(1.0 + 0x1p-48 + motion.skew) - own.along_spin[k] * own.along_spin[k]};
-        longest = upper(longest, step_along(own.axes[k], reach, own, f, motion, frame, is_long));
+        longest = upper(longest, step_along(own.axes[k], reach, own, f, circles));
     });
-    if (is_long) {
-        const OwnReach<Real> reach{circles_of(own).span, Real{}, Real(kAxisError)};
-        longest = upper(longest, step_along(own.spin_axis, reach, own, f, motion, frame, true));
+    if (circles.matter) {
+        const OwnReach<Real> reach{circles.span, Real{}, Real(kAxisError)};
+        longest = upper(longest, step_along(own.spin_axis, reach, own, f, circles));
     }
     return upper(longest, across(longest));
 }

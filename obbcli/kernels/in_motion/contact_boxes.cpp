@@ -21,14 +21,25 @@ constexpr std::uint32_t kTrianglesAPop = 64;
 
 } // namespace
 
-// About the time in which the boxes of a pair move by their own sizes against each other.
-double ContactQuery::window(const Entry& entry) const {
+bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
+                           std::uint32_t max_depth) const {
+    return !ref.is_triangle() && ref.depth < max_depth &&
+           !(options_.limits.boxes.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
+}
+
+// The largest half extents of both.
+std::array<double, 2> ContactQuery::sizes_of(const Entry& entry) const {
+    return {MovingPair::size_of(pair_.a(), entry.a), MovingPair::size_of(pair_.b(), entry.b)};
+}
+
+// About the time in which boxes of such sizes, as they are placed, move by as much against each
+// other.
+double ContactQuery::window(const std::array<double, 2>& sizes) const {
     const Vec3 wa = pair_.a().spin().velocity(), wb = pair_.b().spin().velocity();
     const Vec3 velocity = pair_.closing_velocity() +
                           cross(wb, lane(pair_.boxes().center, kLaneOfB[0])) -
                           cross(wa, lane(pair_.boxes().center, kLaneOfA[0]));
-    const double size_a = MovingPair::size_of(pair_.a(), entry.a),
-                 size_b = MovingPair::size_of(pair_.b(), entry.b);
+    const auto [size_a, size_b] = sizes;
     const double turning = size_a * pair_.a().spin().speed() + size_b * pair_.b().spin().speed();
     const double factor = counts_.box_tests < kGliding ? kWindow : kWindowOfGliding;
     return factor * (size_a + size_b) / (norm_1(velocity) + turning);
@@ -62,7 +73,7 @@ bool ContactQuery::is_over(const Entry& entry) {
         return true;
     }
     // Far enough apart to be pushed on as a whole.
-    const bool has_parted = *time - entry.time > 0.5 * window(entry);
+    const bool has_parted = *time - entry.time > 0.5 * window(sizes_of(entry));
     if (has_parted) {
         push({*time, entry.end, entry.a, entry.b, entry.window});
     }
@@ -72,7 +83,7 @@ bool ContactQuery::is_over(const Entry& entry) {
 // Replaces a pair by the pairs of its children, each of which goes into the queue with the time
 // until which its own boxes prove it apart.
 template <bool kOpensA>
-void ContactQuery::open(Entry entry) {
+void ContactQuery::open(Entry entry, const std::array<double, 2>& sizes) {
     pair_.set_time(entry.time);
     const NodeRef& ref = kOpensA ? entry.a : entry.b;
     const NodeRef& other = kOpensA ? entry.b : entry.a;
@@ -92,7 +103,7 @@ void ContactQuery::open(Entry entry) {
         const std::array<NodeRef, 2> others{other, other};
         pair_.place(kOpensA ? children : others, kOpensA ? others : children);
         if (i == begin && entry.next == 0 && !pair_.is_translation()) {
-            close_after(entry, window(entry));
+            close_after(entry, window(sizes));
         }
         const std::array<double, 2> steps = pair_.steps(now, entry.end - entry.time);
         for (std::uint32_t k = 0; k <= last - i; ++k) {
@@ -162,10 +173,12 @@ void ContactQuery::visit(const Entry& entry) {
         return;
     } else {
         probe(entry);
-        looked_at_ = entry;
-        take_tie(ties_.may_tie(entry.refs(), counts_.pops)
-                     ? ties_.look(pair_, entry.refs(), counts_.pops)
-                     : TiePlanes::Verdict::kUnknown);
+        if (ties_.may_tie(entry.refs(), counts_.pops)) {
+            looked_at_ = entry;
+            take_tie(ties_.look(pair_, entry.refs(), counts_.pops));
+        } else {
+            part(entry);
+        }
     }
 }
 
@@ -173,11 +186,11 @@ void ContactQuery::visit(const Entry& entry) {
 void ContactQuery::part(const Entry& entry) {
     const bool open_a = is_open(pair_.a().tree(), entry.a, options_.limits.boxes.max_depth_a);
     const bool open_b = is_open(pair_.b().tree(), entry.b, options_.limits.boxes.max_depth_b);
-    if (!open_b || (open_a && MovingPair::size_of(pair_.a(), entry.a) >=
-                                  MovingPair::size_of(pair_.b(), entry.b))) {
-        open<true>(entry);
+    const std::array<double, 2> sizes = sizes_of(entry);
+    if (!open_b || (open_a && sizes[0] >= sizes[1])) {
+        open<true>(entry, sizes);
     } else {
-        open<false>(entry);
+        open<false>(entry, sizes);
     }
 }
 

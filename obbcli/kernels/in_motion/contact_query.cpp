@@ -63,12 +63,6 @@ bool ContactQuery::advance_cast(std::uint64_t max_pops, double until) {
     return is_over;
 }
 
-bool ContactQuery::is_open(const TreeView& tree, const NodeRef& ref,
-                           std::uint32_t max_depth) const {
-    return !ref.is_triangle() && ref.depth < max_depth &&
-           !(options_.limits.boxes.boxes_for_leaves && TreeView::is_leaf(tree.node(ref)));
-}
-
 // The time up to which a step proves a pair apart, rounded down. Nothing where the entry is done
 // with: the pair is apart until the duration, or until the end of its window, where the pair that
 // the window was opened for answers for the rest. A step proves a half-open interval, so that

@@ -97,6 +97,7 @@ class ContactQuery {
     [[nodiscard]] std::optional<double> in_window(const Entry& entry, double time) const;
     void push(const Entry& entry);
     void visit(const Entry& entry);
+    [[nodiscard]] std::array<double, 2> sizes_of(const Entry& entry) const;
     void part(const Entry& entry);
     void set_planes(const Entry& entry, const Touch& touch);
     void take_tie(TiePlanes::Verdict verdict);
@@ -104,8 +105,8 @@ class ContactQuery {
     void probe(const Entry& entry);
     [[nodiscard]] Entry nearer_half(const Entry& entry, bool opens_a);
     template <bool kOpensA>
-    void open(Entry entry);
-    [[nodiscard]] double window(const Entry& entry) const;
+    void open(Entry entry, const std::array<double, 2>& sizes);
+    [[nodiscard]] double window(const std::array<double, 2>& sizes) const;
     void close_after(Entry& entry, double wide);
     [[nodiscard]] double step_of_boxes(const Entry& entry, double margin);
     [[nodiscard]] bool is_over(const Entry& entry);

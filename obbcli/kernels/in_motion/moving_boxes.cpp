@@ -36,24 +36,19 @@ OBB_INLINE void turn(LaneMotion& motion, const Turn& a, const Turn& b) {
 template <std::size_t kBytes>
 OBB_INLINE void place(const LaneMotion& motion, const FourPlaced& nodes, PlacedBoxes& boxes) {
     using Real = Doubles<kBytes>;
-    // Above the extents is the first number of the quaternion, and above the centre the extents.
-    const auto extents = gathered_fours<16, 4>([&](std::size_t k) __attribute__((always_inline)) {
-        return nodes[k]->half_extents.data();
-    });
-    const auto rotation = gathered_fours<16, 4>(
-        [&](std::size_t k) __attribute__((always_inline)) { return nodes[k]->rotation.data(); });
-    Lanes3<Real> c;
-    Real above;
-    gather_pairs<kBytes>([&](std::size_t k)
-                             __attribute__((always_inline)) { return &nodes[k]->center.x; },
-                         c[0], c[1]);
-    gather_pairs<kBytes>([&](std::size_t k)
-                             __attribute__((always_inline)) { return &nodes[k]->center.z; },
-                         c[2], above);
+    const auto lanes = [&](const auto& number) __attribute__((always_inline)) {
+        const PairLanes all{number(*nodes[0]), number(*nodes[1]), number(*nodes[2]),
+                            number(*nodes[3])};
+        return Real::at(all.data());
+    };
+    const auto rotation = [&](std::size_t k) __attribute__((always_inline)) {
+        return lanes([k](const Node& n) { return double{n.rotation[k]}; });
+    };
     const Real scale = Real::at(motion.node_scale.data());
-    const Lanes3<Real> center{scale * c[0], scale * c[1], scale * c[2]};
-    const Real w = widened<kBytes>(rotation[0]), x = widened<kBytes>(rotation[1]),
-               y = widened<kBytes>(rotation[2]), z = widened<kBytes>(rotation[3]);
+    const Lanes3<Real> center{scale * lanes([](const Node& n) { return n.center.x; }),
+                              scale * lanes([](const Node& n) { return n.center.y; }),
+                              scale * lanes([](const Node& n) { return n.center.z; })};
+    const Real w = rotation(0), x = rotation(1), y = rotation(2), z = rotation(3);
     const Real one(1.0);
     const Real s = Real(2.0) / (w * w + x * x + y * y + z * z);
     const Real wx = s * w * x, wy = s * w * y, wz = s * w * z;
@@ -68,7 +63,9 @@ OBB_INLINE void place(const LaneMotion& motion, const FourPlaced& nodes, PlacedB
             inner(row, axes[k]).store(boxes.axes[k][i].data());
         }
         (inner(row, center) + Real::at(motion.shift[i].data())).store(boxes.center[i].data());
-        (scale * widened<kBytes>(extents[i])).store(boxes.half_extents[i].data());
+        (scale * lanes([i](const Node& n) {
+             return double{n.half_extents[i]};
+         })).store(boxes.half_extents[i].data());
     }
 }
 

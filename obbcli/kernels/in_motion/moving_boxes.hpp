@@ -27,7 +27,7 @@ using PairLanes3 = std::array<PairLanes, 3>;
 inline constexpr std::array<std::size_t, 2> kLaneOfA{0, 2}, kLaneOfB{1, 3};
 
 // Each about its own body's pivot.
-struct PlacedBoxes {
+struct alignas(32) PlacedBoxes {
     PairLanes3 center, half_extents;
     std::array<PairLanes3, 3> axes;
 
@@ -36,7 +36,7 @@ struct PlacedBoxes {
 };
 
 // Both bodies' motions at one time.
-struct LaneMotion {
+struct alignas(32) LaneMotion {
     // From the coordinates of either tree to those about its pivot, at the present time:
     // x -> matrix * (node_scale * x) + shift.
     std::array<PairLanes3, 3> matrix; // rows

@@ -59,17 +59,17 @@ void MovingPair::set_units(double duration, double clearance) {
 
 void MovingPair::set_motion() {
     const Spin &a = a_.spin(), &b = b_.spin();
-    motion_.velocity = either(a.velocity(), b.velocity());
-    motion_.axis = either(a.axis(), b.axis());
-    motion_.speed = either(a.speed(), b.speed());
+    motion_->velocity = either(a.velocity(), b.velocity());
+    motion_->axis = either(a.axis(), b.axis());
+    motion_->speed = either(a.speed(), b.speed());
     const auto square = [](double speed) { return (1 + 0x1p-40) * speed * speed; };
-    motion_.square = either(square(a.speed()), square(b.speed()));
-    motion_.node_scale = either(a_.node_scale(), b_.node_scale());
+    motion_->square = either(square(a.speed()), square(b.speed()));
+    motion_->node_scale = either(a_.node_scale(), b_.node_scale());
     for (std::size_t j = 0; j < 3; ++j) {
-        motion_.columns[j] = either(a_.rotation().column(j), b_.rotation().column(j));
+        motion_->columns[j] = either(a_.rotation().column(j), b_.rotation().column(j));
     }
-    motion_.offset = either(a_.offset(), b_.offset());
-    motion_.skew = std::max(a_.skew(), b_.skew());
+    motion_->offset = either(a_.offset(), b_.offset());
+    motion_->skew = std::max(a_.skew(), b_.skew());
 }
 
 LinearMotion MovingPair::linear_motion() const {
@@ -98,14 +98,15 @@ void MovingPair::turn_to(double time) {
     time_ = time;
     a_.set_time(time);
     b_.set_time(time);
-    set_turns(motion_, a_.turn(), b_.turn());
+    set_turns(*motion_, a_.turn(), b_.turn());
 }
 
 void MovingPair::place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b) {
     const auto node = [](const MovingTree& body, const NodeRef& ref) {
         return ref.is_triangle() ? &kNoBox : &body.tree().node(ref);
     };
-    place_boxes(motion_, {node(a_, a[0]), node(b_, b[0]), node(a_, a[1]), node(b_, b[1])}, boxes_);
+    place_boxes(*motion_, {node(a_, a[0]), node(b_, b[0]), node(a_, a[1]), node(b_, b[1])},
+                *boxes_);
     place_triangles(a_, a, kLaneOfA);
     place_triangles(b_, b, kLaneOfB);
 }
@@ -115,11 +116,11 @@ void MovingPair::place_triangles(const MovingTree& body, const std::array<NodeRe
                                  const std::array<std::size_t, 2>& lanes) {
     const auto is_triangle = [&](std::size_t k) { return parts[k].is_triangle(); };
     if (is_triangle(0)) {
-        boxes_.set(lanes[0], body.box(parts[0]));
+        boxes_->set(lanes[0], body.box(parts[0]));
     }
     if (is_triangle(1)) {
         const bool is_same = is_triangle(0) && parts[0].begin == parts[1].begin;
-        boxes_.set(lanes[1], is_same ? boxes_.box(lanes[0]) : body.box(parts[1]));
+        boxes_->set(lanes[1], is_same ? boxes_->box(lanes[0]) : body.box(parts[1]));
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 
 namespace obb {
 
@@ -92,10 +93,10 @@ class MovingPair {
     }
     // Puts the boxes of two parts of each body where they are at the present time.
     void place(const std::array<NodeRef, 2>& a, const std::array<NodeRef, 2>& b);
-    [[nodiscard]] const PlacedBoxes& boxes() const { return boxes_; }
+    [[nodiscard]] const PlacedBoxes& boxes() const { return *boxes_; }
     // How long the placed boxes stay apart, pair by pair, as box_steps() says.
     [[nodiscard]] std::array<double, 2> steps(const MovingFrame& frame, double wanted) const {
-        return box_steps(motion_, boxes_, frame, wanted);
+        return box_steps(*motion_, *boxes_, frame, wanted);
     }
 
     // Triangles at a time; this sets the time.
@@ -115,8 +116,10 @@ class MovingPair {
                          const std::array<std::size_t, 2>& lanes);
 
     MovingTree a_, b_;
-    LaneMotion motion_{};
-    PlacedBoxes boxes_{}; // of the parts
+    // On the heap: what is to lie within lines of a cache wants more alignment than the objects
+    // that hold queries have.
+    std::unique_ptr<LaneMotion> motion_ = std::make_unique<LaneMotion>();
+    std::unique_ptr<PlacedBoxes> boxes_ = std::make_unique<PlacedBoxes>(); // of the parts
     int length_exponent_ = 0, time_exponent_ = 0;
     double duration_ = 0, clearance_ = 0;
     Vec3 pivot_between_{0, 0, 0}, closing_velocity_{0, 0, 0};

@@ -118,12 +118,11 @@ OBB_INLINE Lanes<Number, kCount, kBytes> loaded(const Place& place) {
     return result;
 }
 
-// Four numbers from each of eight places, or of four: the first of all of them, the second of all,
-// and so on.
-template <std::size_t kBytes, std::size_t kCount = 8, typename Place>
-OBB_INLINE std::array<Lanes<float, kCount, kBytes>, 4> gathered_fours(const Place& place) {
+// Four numbers from each of eight places: the first of all of them, the second of all, and so on.
+template <std::size_t kBytes, typename Place>
+OBB_INLINE std::array<Floats<kBytes>, 4> gathered_fours(const Place& place) {
     const auto row = [&](std::size_t k) __attribute__((always_inline)) {
-        return loaded<float, kCount, kBytes>(
+        return loaded<float, 8, kBytes>(
             [&](std::size_t g) __attribute__((always_inline)) { return place(k + 4 * g); });
     };
     const auto row0 = row(0), row1 = row(1), row2 = row(2), row3 = row(3);
@@ -145,19 +144,6 @@ OBB_INLINE void gather_pairs(const Place& place, Doubles<kBytes>& first, Doubles
     second = mingled<1, 3>(row0, row1);
 }
 
-// The same numbers as doubles.
-template <std::size_t kBytes>
-OBB_INLINE Doubles<kBytes> widened(const Lanes<float, 4, 16>& a) {
-    using Wide = typename RegisterOf<double, kBytes>::Type;
-    Doubles<kBytes> result;
-    if constexpr (kBytes == 32) {
-        result.parts[0] = Wide{double{a[0]}, double{a[1]}, double{a[2]}, double{a[3]}};
-    } else {
-        result.parts[0] = Wide{double{a[0]}, double{a[1]}};
-        result.parts[1] = Wide{double{a[2]}, double{a[3]}};
-    }
-    return result;
-}
 // Every 16 bytes hold a and b.
 template <typename Real>
 OBB_INLINE Real alternating(double a, double b) {
