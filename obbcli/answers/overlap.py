@@ -57,6 +57,8 @@ class Gap:
         point_b: where on B.
         triangle_a: row of A's mesh file that `point_a` lies in.
         triangle_b: row of B's mesh file that `point_b` lies in.
+        part_a: path of the part of A that `triangle_a` is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that `triangle_b` is of, likewise.
     """
 
     bounds: Bounds
@@ -64,6 +66,8 @@ class Gap:
     point_b: Vector | None = None
     triangle_a: int | None = None
     triangle_b: int | None = None
+    part_a: str | None = None
+    part_b: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,12 +82,16 @@ class Depth:
         triangle_a: row of A's mesh file that is nearest to the point, or that holds it. None
             without a point.
         triangle_b: the same of B.
+        part_a: path of the part of A that `triangle_a` is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that `triangle_b` is of, likewise.
     """
 
     bounds: tuple[float, float | None]
     point: Vector | None = None
     triangle_a: int | None = None
     triangle_b: int | None = None
+    part_a: str | None = None
+    part_b: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

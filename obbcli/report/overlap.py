@@ -25,6 +25,7 @@ _SENTENCES = {
     "crossing": "triangles meet of a surface that does not close",
     "unresolved": "a limit was reached before the answer was known",
 }
+_PARTS = ("part_a", "part_b")
 _DEPTHS = {
     "thickness": "thickness",
     "protrusion_a": "A into B",
@@ -68,7 +69,9 @@ def relation_part(answer: Overlap) -> Record:
 def plain(value: object) -> Any:
     """Return a value of an answer as documents hold it: classes as objects, tuples as lists."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+        told = {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+        # Parts are named where some were selected.
+        return {k: v for k, v in told.items() if v is not None or k not in _PARTS}
     return [plain(part) for part in value] if isinstance(value, tuple) else value
 
 
@@ -123,9 +126,15 @@ def depth_rows(result: Record) -> list[tuple[str, str]]:
         depth = result[name]
         if depth is None:
             continue
-        place = "" if depth["point"] is None else f", at {point(depth['point'])}"
+        place = "" if depth["point"] is None else f", at {point(depth['point'])}{_parts(depth)}"
         rows.append((words, f"{bracket(depth['bounds'])}{place}"))
     return rows
+
+
+def _parts(depth: Record) -> str:
+    """Return the selected parts that a depth is of."""
+    named = [f"{depth[k]} of {name}" for k, name in zip(_PARTS, "AB", strict=True) if k in depth]
+    return f" ({' and '.join(named)})" if named else ""
 
 
 def bracket(bounds: list[float | None]) -> str:

@@ -218,3 +218,20 @@ def test_python_takes_selections_wherever_a_path_is_taken(robot):
     assert tree.mesh.parts == load_mesh("robot.obj#arm").parts
     found = obbcli.ObbTree.from_bytes(tree.to_bytes())
     assert (found.parts, found.mesh.parts) == (tree.parts, tree.parts)
+
+
+def test_overlaps_name_the_parts_that_are_deep_in_each_other(robot, obbtree):
+    words = ("overlap", "robot.obj#base", "robot.obj#**[pm]", "--translate", 0.25, 0, 0)
+
+    result = obbtree(*words, "--json").json["result"]
+
+    assert result["relation"] == "overlapping"
+    for name in ("thickness", "protrusion_a", "protrusion_b"):
+        assert (result[name]["part_a"], result[name]["part_b"]) == ("base", "arm")
+    assert "(base of A and arm of B)" in obbtree(*words).out
+
+
+def test_overlaps_of_whole_files_name_no_parts(here, obbtree):
+    words = ("overlap", "cube.stl", "cube.stl", "--translate", 0.25, 0, 0, "--json")
+
+    assert "part_a" not in obbtree(*words).json["result"]["thickness"]

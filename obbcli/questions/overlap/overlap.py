@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import DEPTH_TOLERANCE, Accuracy
-from obbcli.answers.overlap import Gap, Overlap, OverlapStats
+from obbcli.answers.overlap import Depth, Gap, Overlap, OverlapStats
 from obbcli.questions.border import refused, stats_of
 from obbcli.questions.containment import body_name, why_open
 from obbcli.questions.distance import measure
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from obbcli.answers.overlap import RelationWord
     from obbcli.motion.body import Body, Shape
+    from obbcli.questions.pair_question import Trees
 
 _TOUCH = Gap(bounds=(0.0, 0.0))
 
@@ -113,11 +115,24 @@ def overlap_of(pair: PairQuestion, asked: Asked) -> Overlap:
         raise
     seconds = {"load": pair.load_seconds, "query": time.perf_counter() - start}
     return Overlap(
-        **found,
+        **_with_parts(found, pair.trees),
         band=question.band,
         complete=question.pursuit.is_complete,
         stats=_stats(pair, question.pursuit, seconds),
     )
+
+
+def _with_parts(found: dict[str, Any], trees: Trees) -> dict[str, Any]:
+    """Return what was found with the selected parts that its triangles are of."""
+    a, b = trees
+    if not (a.parts or b.parts):
+        return found
+    named = {
+        name: replace(one, part_a=a.part_of(one.triangle_a), part_b=b.part_of(one.triangle_b))
+        for name, one in found.items()
+        if isinstance(one, (Gap, Depth))
+    }
+    return found | named
 
 
 def _stats(pair: PairQuestion, pursuit: Pursuit, seconds: dict[str, float]) -> OverlapStats:

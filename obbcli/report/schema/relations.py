@@ -14,6 +14,7 @@ from obbcli.answers.overlap import (
 from obbcli.report.schema.typed import schemas_of
 from obbcli.report.schema.words import Schema, list_of, record, ref
 
+_PARTS = ("part_a", "part_b")
 _DEPTH_FIELDS = ("thickness", "protrusion_a", "protrusion_b")
 
 
@@ -22,12 +23,12 @@ def overlap_fields() -> dict[str, Schema]:
     fields = schemas_of(
         Overlap,
         band=record(schemas_of(Band)),
-        distance=record(schemas_of(Gap)),
+        distance=record(schemas_of(Gap), optional=_PARTS),
         volume=record(schemas_of(Volume)),
         regions=list_of(record(schemas_of(Region))),
         separation_along=record(schemas_of(SeparationAlong)),
         stats=ref("stats"),
-        **dict.fromkeys(_DEPTH_FIELDS, record(schemas_of(Depth))),
+        **dict.fromkeys(_DEPTH_FIELDS, record(schemas_of(Depth), optional=_PARTS)),
     )
     del fields["stats"]
     return fields
