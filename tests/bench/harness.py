@@ -28,6 +28,7 @@ PACKAGES = (
     "python-fcl",
     "coal",
     "ipctk",
+    "manifold3d",
     "vtk",
     "pyvista",
     "trimesh",

@@ -29,6 +29,7 @@ import bench_scene
 import bench_screws
 import bench_static
 import bench_sweep
+import bench_volume
 import bench_wall
 import moving_tables
 from harness import Row, machine, record, table
@@ -49,6 +50,7 @@ BENCHES = {
     "scene": lambda options: bench_scene.run(options.quick),
     "screws": lambda options: bench_screws.run(options.quick),
     "sweep": lambda options: bench_sweep.run(options.quick),
+    "volume": lambda options: bench_volume.run(options.quick),
     "hostile": lambda options: bench_hostile.run(options.quick),
     "wall": lambda options: bench_wall.run(options.quick),
     "formats": lambda options: bench_formats.run(options.quick),

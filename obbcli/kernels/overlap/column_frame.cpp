@@ -20,7 +20,14 @@ struct Crowd {
     return !(a.low[k] > b.high[k]) && !(b.low[k] > a.high[k]);
 }
 
-// Some nodes that hold all triangles which meet the window.
+// Whether what lies within some bounds is in a column along an axis that passes the window, or over
+// it: above the floor.
+[[nodiscard]] bool matters(const Bounds& bounds, const Bounds& window, std::size_t axis) {
+    return meet(bounds, window, (axis + 1) % 3) && meet(bounds, window, (axis + 2) % 3) &&
+           !(bounds.high[axis] <= window.low[axis]);
+}
+
+// Some nodes that hold all triangles which matter along any axis.
 [[nodiscard]] std::vector<Crowd> crowds_of(const ColumnBody& body, const Bounds& window) {
     constexpr std::size_t kCrowds = 48;
     constexpr std::uint32_t kFew = 8;
@@ -36,7 +43,8 @@ struct Crowd {
         crowds.pop_back();
         for (const NodeRef& part : parts_of(body.tree(), largest)) {
             const Bounds bounds = body.around(part);
-            if (meet(bounds, window, 0) && meet(bounds, window, 1) && meet(bounds, window, 2)) {
+            if (matters(bounds, window, 0) || matters(bounds, window, 1) ||
+                matters(bounds, window, 2)) {
                 crowds.push_back({part, bounds});
                 std::push_heap(crowds.begin(), crowds.end(), is_smaller);
             }
@@ -47,18 +55,19 @@ struct Crowd {
 
 // How many pairs of shadows are expected along each axis: of these, the pairs of crowds whose
 // shadows meet. Whole numbers, so that the order of the bodies does not matter.
-[[nodiscard]] std::array<std::uint64_t, 3> costs_of(const std::vector<Crowd>& a,
-                                                    const std::vector<Crowd>& b) {
+[[nodiscard]] std::array<std::uint64_t, 3>
+costs_of(const std::vector<Crowd>& a, const std::vector<Crowd>& b, const Bounds& window) {
     std::array<std::uint64_t, 3> costs{};
-    for (const Crowd& p : a) {
-        for (const Crowd& q : b) {
-            const std::uint64_t pairs =
-                std::uint64_t{p.ref.triangle_count()} * q.ref.triangle_count();
-            const std::array<bool, 3> is_shared{meet(p.bounds, q.bounds, 0),
-                                                meet(p.bounds, q.bounds, 1),
-                                                meet(p.bounds, q.bounds, 2)};
-            for (std::size_t k = 0; k < 3; ++k) {
-                costs[k] += is_shared[(k + 1) % 3] && is_shared[(k + 2) % 3] ? pairs : 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (const Crowd& p : a) {
+            if (!matters(p.bounds, window, k)) {
+                continue;
+            }
+            for (const Crowd& q : b) {
+                if (matters(q.bounds, window, k) && meet(p.bounds, q.bounds, (k + 1) % 3) &&
+                    meet(p.bounds, q.bounds, (k + 2) % 3)) {
+                    costs[k] += std::uint64_t{p.ref.triangle_count()} * q.ref.triangle_count();
+                }
             }
         }
     }
@@ -110,7 +119,7 @@ ColumnFrame frame_of(const ColumnBody& a, const ColumnBody& b, const Bounds& win
     if (frame.is_empty) {
         return frame;
     }
-    frame.axis = best_axis(costs_of(crowds_of(a, window), crowds_of(b, window)), sizes);
+    frame.axis = best_axis(costs_of(crowds_of(a, window), crowds_of(b, window), window), sizes);
     const Vec3 low = along_axis(window.low, frame.axis);
     const Vec3 high = along_axis(window.high, frame.axis);
     frame.origin = window.low;

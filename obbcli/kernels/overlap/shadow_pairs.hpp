@@ -18,7 +18,7 @@ namespace obb {
 // The shadows of a few triangles of a body, made once while they are looked at often.
 class ShadowGroups {
   public:
-    static constexpr std::uint32_t kMost = 8;
+    static constexpr std::uint32_t kMost = 16;
 
     ShadowGroups(const ColumnBody& body, const ColumnFrame& frame);
 
@@ -26,7 +26,7 @@ class ShadowGroups {
     [[nodiscard]] std::span<const Shadow> of(const NodeRef& ref);
 
   private:
-    static constexpr std::size_t kSlots = 256; // at most
+    static constexpr std::size_t kSlots = 128; // at most
 
     struct Group {
         std::uint32_t begin = 0, end = 0;
