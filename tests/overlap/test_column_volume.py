@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -226,3 +227,36 @@ def test_coordinates_that_leave_the_doubles_are_refused():
 
     with pytest.raises(ValueError, match="range of double"):
         query_of(huge, huge, [Pose(QUARTER_TURN_X, [1e308, 0, 0]), Pose()])
+
+
+def test_threads_that_share_growing_trees_find_the_same():
+    vertices, faces = geodesic(1280)
+    pose = Pose(random_rotation(5), [0.3, 0.1, 0])
+    whole = volume((vertices, faces), (vertices, faces), [Pose(), pose], lazy=False)
+
+    for _ in range(5):
+        trees = [ObbTree.build(Mesh(vertices, faces), lazy=True) for _ in range(2)]
+
+        def ask(_: int, trees: Any = trees) -> Any:
+            bodies = trees[0].kernel, Pose().kernel, trees[1].kernel, pose.kernel
+            query = kernels.ColumnVolume(*bodies)
+            while not query.advance(50):
+                pass
+            return query.bounds
+
+        with ThreadPoolExecutor(4) as pool:
+            assert set(pool.map(ask, range(4))) == {whole[:2]}
+
+
+def test_lazy_tree_opens_only_what_the_window_needs():
+    vertices, faces = geodesic(20_480)
+    tree = ObbTree.build(Mesh(vertices, faces), lazy=True)
+    other = ObbTree.build(Mesh(*cube(0.5)))
+    place = Pose(translation=[1.3, 0, 0])
+
+    query = kernels.ColumnVolume(tree.kernel, Pose().kernel, other.kernel, place.kernel)
+    while not query.advance(2**40):
+        pass
+
+    assert query.bounds[0] > 0
+    assert tree.node_count < 0.5 * 20_479

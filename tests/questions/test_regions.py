@@ -36,6 +36,17 @@ def test_default_resolution_suits_the_bodies():
     assert len(answer.regions) == 3
 
 
+@pytest.mark.parametrize("scale", [1e307, 1e-300, 2.0**-1040])
+def test_default_resolution_suits_bodies_of_any_size(scale):
+    first = Mesh(scale * np.asarray(cube(0.5)[0]), cube(0.5)[1])
+
+    answer = overlap(first, Body(first, Pose(translation=[0.5 * scale, 0, 0])), regions=True)
+
+    (region,) = answer.regions
+    assert 0 < answer.resolution < scale
+    assert region.thickness[0] <= 0.5 * scale <= region.thickness[1]
+
+
 def test_swapped_bodies_have_the_same_regions():
     found, swapped = overlap(TEETH, PLATE, regions=0.4), overlap(PLATE, TEETH, regions=0.4)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,7 +38,7 @@ def regions_of(pair: PairQuestion, asked: Asked, floor: float, pursuit: Pursuit)
         kernels.TreeError: a tree file is damaged.
     """
     resolution = asked.resolution or _default_resolution(pair)
-    if resolution == 0:
+    if resolution is None:
         return {"regions": (), "unproven": 0}
     (a, b), (tree_a, tree_b) = pair.bodies, pair.trees
     bodies = [(tree_a.kernel, a.pose.kernel), (tree_b.kernel, b.pose.kernel)]
@@ -66,8 +68,12 @@ def _region(told: Any, *, is_swapped: bool) -> Region:
     )
 
 
-def _default_resolution(pair: PairQuestion) -> float:
-    """Return a fiftieth of the diagonal of the common box; 0 where there is none."""
+def _default_resolution(pair: PairQuestion) -> float | None:
+    """Return a fiftieth of the diagonal of the common box; None where there is none."""
     boxes = [posed_bounds(*placed) for placed in zip(pair.bodies, pair.trees, strict=True)]
     low, high = np.max([box[0] for box in boxes], axis=0), np.min([box[1] for box in boxes], axis=0)
-    return _SHARE * float(np.linalg.norm(high - low)) if np.all(low < high) else 0.0
+    if not np.all(low < high):
+        return None
+    # Neither squares of huge lengths nor a share of tiny ones leave the doubles.
+    diagonal = math.hypot(*(high * _SHARE - low * _SHARE).tolist())
+    return min(max(diagonal, math.ulp(0.0)), sys.float_info.max)
