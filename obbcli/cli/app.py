@@ -48,7 +48,7 @@ Examples:
 \b
 Exit codes:
   0    answered, whatever the answer; with --exit-code: proven apart
-  1    with --exit-code: they touch
+  1    with --exit-code: they touch; of overlap: they overlap
   2    the command line is wrong
   3    an input cannot be read, or is refused
   4    unresolved, as a limit was reached; with --exit-code also: apart, but not proven so
