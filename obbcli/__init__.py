@@ -14,6 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from obbcli import primitives
     from obbcli.accuracy import Accuracy
+    from obbcli.answers.clearance import Clearance
     from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Contact, FirstContact
     from obbcli.answers.counts import QueryStats
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from obbcli.motion.body import Body
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
+    from obbcli.questions.clearance.clearance import clearance
+    from obbcli.questions.clearance.query import ClearanceQuery
     from obbcli.questions.collide import collide
     from obbcli.questions.contacts import contacts
     from obbcli.questions.distance import distance
@@ -52,6 +55,8 @@ _HOMES = {
     "Accuracy": "accuracy",
     "Assembly": "motion.assembly",
     "Body": "motion.body",
+    "Clearance": "answers.clearance",
+    "ClearanceQuery": "questions.clearance.query",
     "Collision": "answers.collision",
     "Contact": "answers.contact",
     "Distance": "answers.distance",
@@ -76,6 +81,7 @@ _HOMES = {
     "Tradeoff": "study.tradeoff.trials",
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
+    "clearance": "questions.clearance.clearance",
     "collide": "questions.collide",
     "contacts": "questions.contacts",
     "distance": "questions.distance",
@@ -95,6 +101,8 @@ __all__ = [
     "Accuracy",
     "Assembly",
     "Body",
+    "Clearance",
+    "ClearanceQuery",
     "Collision",
     "Contact",
     "Distance",
@@ -120,6 +128,7 @@ __all__ = [
     "TreeFileError",
     "UnresolvedError",
     "__version__",
+    "clearance",
     "collide",
     "contacts",
     "distance",

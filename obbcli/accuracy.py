@@ -25,6 +25,9 @@ TIME_TOLERANCE = 1e-9
 DEPTH_TOLERANCE = 1e-2
 """The relative width asked of a depth's bracket where the caller asks for none."""
 
+CLEARANCE_TOLERANCE = 1e-6
+"""The relative width asked of a least clearance's bracket where the caller asks for none."""
+
 
 class Aspect(NamedTuple):
     """What a field of `Accuracy` is, beside its name and default.

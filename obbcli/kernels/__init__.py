@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from obbcli.kernels._core import (
     AtRestAnswer,
+    ClearanceQuery,
     ColumnVolume,
     Contact,
     ContactPlace,
@@ -148,6 +149,7 @@ def asked_by_kernels_first(question: QuickQuestion) -> Callable[[_Function], _Fu
 
 __all__ = [
     "AtRestAnswer",
+    "ClearanceQuery",
     "ColumnVolume",
     "Contact",
     "ContactPlace",

@@ -19,6 +19,7 @@ from obbcli.tree.tree import ObbTree, load_tree
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from obbcli.answers.clearance import LeastClearance
     from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Contact, FirstContact
     from obbcli.answers.distance import Distance
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 _LARGE = 50_000
 _EXACT = Accuracy()
 
-_Answer = TypeVar("_Answer", "Collision", "Contact", "FirstContact", "Distance")
+_Answer = TypeVar("_Answer", "Collision", "Contact", "FirstContact", "Distance", "LeastClearance")
 Trees = tuple[ObbTree, ObbTree]
 
 

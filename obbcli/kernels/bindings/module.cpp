@@ -40,4 +40,5 @@ NB_MODULE(_core, m) {
     bind_swept_pairs(m);
     bind_overlap_volume(m);
     bind_overlap_regions(m);
+    bind_clearance(m);
 }

@@ -155,6 +155,7 @@ class SignalWatch {
 };
 
 void bind_answer(nb::module_& m);
+void bind_clearance(nb::module_& m);
 void bind_containment(nb::module_& m);
 void bind_distance(nb::module_& m);
 void bind_contact_query(nb::module_& m);

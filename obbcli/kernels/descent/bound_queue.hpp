@@ -48,6 +48,14 @@ class BoundQueue {
         return entries_[place];
     }
 
+    // Those that wait, in no order.
+    template <typename Each>
+    void for_each(Each each) const {
+        for (const Key& key : keys_) {
+            each(entries_[key.place]);
+        }
+    }
+
     void erase_after(double time) {
         std::erase_if(keys_, [&](const Key& key) {
             const bool is_late = key.time > time;

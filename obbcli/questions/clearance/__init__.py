@@ -1,0 +1,1 @@
+"""How near two moving bodies come to each other."""

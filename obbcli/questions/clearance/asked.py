@@ -1,0 +1,78 @@
+"""What is asked about a clearance, checked: `Asked`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+from typing import TYPE_CHECKING, NamedTuple
+
+from obbcli.accuracy import CLEARANCE_TOLERANCE
+from obbcli.errors import MotionError
+
+if TYPE_CHECKING:
+    from obbcli.accuracy import Accuracy
+
+CONCERNS = frozenset({"max_iterations", "timeout"})
+"""The fields of `Accuracy` that say something about a least clearance."""
+
+
+class Asked(NamedTuple):
+    """What is asked about the distance of two moving bodies.
+
+    Attributes:
+        tolerance: the relative width asked of the bracket.
+        at_least: mesh units; only whether the bodies keep this distance is asked.
+        solid: whether closed surfaces hold what is inside them.
+    """
+
+    tolerance: float = CLEARANCE_TOLERANCE
+    at_least: float | None = None
+    solid: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        tolerance: float = CLEARANCE_TOLERANCE,
+        at_least: float | None = None,
+        solid: bool = False,
+    ) -> Asked:
+        """Return what is asked, as `clearance` takes it.
+
+        Raises:
+            MotionError: an argument is no number that it may be; `where` is its name.
+        """
+        width = _number("tolerance", tolerance)
+        if not 0 < width < 1:
+            raise MotionError("tolerance", f"is {tolerance!r}", "use a number between 0 and 1")
+        limit = None if at_least is None else _number("at_least", at_least)
+        return cls(width, limit, bool(solid))
+
+
+def refuse_other_accuracy(accuracy: Accuracy) -> None:
+    """Refuse fields of `Accuracy` that say nothing about a least clearance: none is ignored.
+
+    Raises:
+        MotionError: one of them has another value than its default.
+    """
+    for field in fields(accuracy):
+        value = getattr(accuracy, field.name)
+        if field.name not in CONCERNS and value != field.default:
+            raise MotionError(field.name, *why_refused(field.name))
+
+
+def why_refused(name: str) -> tuple[str, str]:
+    """Return why a field of `Accuracy` is refused, and the remedy."""
+    if name == "clearance":
+        return "would mean two things here", "use at_least, or first_contact with it"
+    return "says nothing about a least clearance", "leave it out"
+
+
+def _number(name: str, value: object) -> float:
+    """Return a finite float of at least 0."""
+    try:
+        number = float(value)  # type: ignore[arg-type]  # whatever is no number raises here
+    except (TypeError, ValueError, OverflowError) as fault:
+        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0") from fault
+    if isinstance(value, (str, bool)) or not 0 <= number < math.inf:
+        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0")
+    return number

@@ -1,0 +1,60 @@
+"""The least distance over a motion: `clearance`, which runs a `ClearanceQuery` to its end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from obbcli.accuracy import CLEARANCE_TOLERANCE, Accuracy
+from obbcli.questions.clearance.query import ClearanceQuery
+
+if TYPE_CHECKING:
+    from obbcli.answers.clearance import Clearance
+    from obbcli.motion.body import Body, Shape
+
+
+def clearance(
+    a: Body | Shape,
+    b: Body | Shape,
+    duration: float | None = None,
+    accuracy: Accuracy | None = None,
+    *,
+    tolerance: float = CLEARANCE_TOLERANCE,
+    at_least: float | None = None,
+    solid: bool = False,
+) -> Clearance:
+    """Return how near two bodies come to each other in the closed interval [0, duration].
+
+    The least distance is a proven bracket: at no time are the bodies nearer than its lower end,
+    with every rounding counted, and at the time that the answer names they are no further apart
+    than its upper end. Bodies that touch have the least distance 0, told with their first contact.
+
+    Args:
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
+        b: the other shape, of the same kinds.
+        duration: s; None: 1 where a body moves, else 0.
+        accuracy: its `max_iterations` and `timeout` are the limits after which the bracket stays
+            as wide as it is; its other fields, `clearance` among them, are refused.
+        tolerance: relative width asked of the bracket. It is never narrower than some 1e-12 of the
+            coordinates.
+        at_least: mesh units; ask only whether the bodies keep this distance, which is cheaper: the
+            search ends as soon as that is known.
+        solid: whether closed surfaces hold what is inside them: a body inside the other touches it.
+
+    Raises:
+        MotionError: an argument is refused, a field of `accuracy` has no meaning here, or positions
+            leave the range of double.
+        MeshError: a mesh cannot be read or is refused, as one that is not watertight if `solid`.
+        TreeFileError: a tree file is damaged.
+        OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, 10, 0]))
+        >>> clearance(finger, "sample_meshes/workpiece.obj", at_least=1.0).at_least.verdict
+        'holds'
+    """
+    limits = Accuracy() if accuracy is None else accuracy
+    query = ClearanceQuery(
+        a, b, duration, limits, tolerance=tolerance, at_least=at_least, solid=solid
+    )
+    return query.advance(limits.max_iterations, limits.timeout)
