@@ -162,6 +162,41 @@ void attack_boxes(Random& random, Failures& failures) {
     }
 }
 
+// How many bounds a box that is no number proves: one of eight boxes, in each of its numbers.
+int count_proofs_of_nothing(Random& random) {
+    int proofs = 0;
+    const obb::GapFrame frame = frame_of(obb::Mat3::identity(), {0.5, 0.25, 0.125}, 1);
+    for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        for (std::size_t which = 0; which < 8; ++which) {
+            for (std::size_t field = 0; field < 10; ++field) {
+                std::array<obb::Node, 8> nodes;
+                obb::EightNodes places;
+                for (std::size_t k = 0; k < 8; ++k) {
+                    nodes[k] = random_box(random, 0.01, random.point(0.25), {1, 0, 0, 0});
+                    places[k] = &nodes[k];
+                }
+                obb::Node& node = nodes[which];
+                if (field < 3) {
+                    node.center[field] = bad;
+                } else if (field < 6) {
+                    node.half_extents[field - 3] = static_cast<float>(std::fabs(bad));
+                } else {
+                    node.rotation[field - 6] = static_cast<float>(bad);
+                }
+                obb::EightGaps gaps;
+                obb::measure_gaps(frame, places, gaps);
+                for (std::size_t lane = 0; lane < 8; ++lane) {
+                    const std::size_t first = lane / 4 * 4;
+                    const bool is_of_it = first + obb::kOfA[lane % 4] == which ||
+                                          first + 2 + obb::kOfB[lane % 4] == which;
+                    proofs += is_of_it && gaps.low[lane] != 0 ? 1 : 0;
+                }
+            }
+        }
+    }
+    return proofs;
+}
+
 using Corners = std::array<Vec, 3>;
 
 // The point of a segment nearest to one.
@@ -255,5 +290,7 @@ int main() {
     }
     const bool hold_boxes = report("boxes", kBoxPairs, boxes);
     const bool hold_triangles = report("triangles", kTrianglePairs, triangles);
-    return hold_boxes && hold_triangles ? 0 : 1;
+    const int proofs = count_proofs_of_nothing(random);
+    std::printf("%d bounds by boxes that are no numbers\n", proofs);
+    return hold_boxes && hold_triangles && proofs == 0 ? 0 : 1;
 }

@@ -30,6 +30,10 @@ class PosedTree {
     [[nodiscard]] Obb box(const Node& node) const;
     [[nodiscard]] Triangle triangle_in_frame(const NodeRef& ref) const;
     [[nodiscard]] Triangle triangle(const NodeRef& ref) const;
+    // A vertex of the tree, in the world.
+    [[nodiscard]] Vec3 placed(const Vec3& vertex) const {
+        return is_posed_ ? posed(pose_, vertex) : vertex;
+    }
     // Some triangles of a range, at most four, for they stand in lanes; the first in those left
     // over.
     void place_triangles(std::uint32_t begin, std::uint32_t count, FourTriangles& placed) const;

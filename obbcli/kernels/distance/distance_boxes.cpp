@@ -87,7 +87,8 @@ void DistanceQuery::open_leaf(const Pair& pair, bool opens_a) {
 }
 
 // Two pairs are opened at a time, and two later ones wait for their boxes to come from memory:
-// nearly all that wait are opened some time. Not so on the way down to a first pair of triangles.
+// nearly all that wait are opened some time. Not so on the way down to a first pair of triangles,
+// nor where boxes meet, which may lead to a contact.
 void DistanceQuery::wait_to_open(const Pair& pair, const Node* node_a, const Node* node_b) {
     Openings& openings = openings_[filled_];
     const Node** const nodes = openings.nodes.data() + 4 * openings.count;
@@ -103,7 +104,7 @@ void DistanceQuery::wait_to_open(const Pair& pair, const Node* node_a, const Nod
     opening.lanes = kLanesOfA[node_a != nullptr ? 3 : 1] & kLanesOfB[node_b != nullptr ? 3 : 1];
     opening.triangle_lanes = opening.lanes & (kLanesOfA[triangles_a] | kLanesOfB[triangles_b]);
     ++openings.count;
-    if (is_diving() || (openings.count == 2 && counts_.pops < kEarly)) {
+    if (is_diving() || pair.key == 0 || (openings.count == 2 && counts_.pops < kEarly)) {
         open_all(openings);
     } else if (openings.count == 2) {
         filled_ = 1 - filled_;

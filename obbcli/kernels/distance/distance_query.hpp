@@ -146,7 +146,9 @@ class DistanceQuery {
     [[nodiscard]] double all_apart(const Pair& pair) const;
     void settle(double key) { low_ = std::min(low_, key); }
     void add(const Pair& pair);
-    [[nodiscard]] Triangle in_unit(const Triangle& t) const;
+    [[nodiscard]] Vec3 in_unit(const Vec3& v) const {
+        return unit_factors_[1] * (unit_factors_[0] * v);
+    }
     bool take(const TriangleDistance& found, const NodeRef& a, const NodeRef& b);
     void touch(const NodeRef& a, const NodeRef& b);
 

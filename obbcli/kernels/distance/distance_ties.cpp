@@ -156,17 +156,21 @@ double DistanceQuery::all_apart(const Pair& pair) const {
         const PosedTree& body = is_a ? a_ : b_;
         const NodeRef& ref = is_a ? pair.a : pair.b;
         Summit& summit = summits[is_a ? 0 : 1];
-        RecentVertices seen;
+        std::optional<RecentVertices> seen; // a single triangle has each once
+        if (!ref.is_triangle()) {
+            seen.emplace();
+        }
         for (std::uint32_t i = ref.begin; i < ref.end; ++i) {
-            const Triangle t = in_unit(body.triangle(TreeView::triangle_ref(ref, i)));
-            const Corners& corners = body.tree().corners[i];
+            const auto places = body.tree().corners_of(i);
             for (std::size_t k = 0; k < 3; ++k) {
-                if (!seen.add(corners[k])) {
-                    if (!origin) {
-                        origin = t[k];
-                    }
-                    summit.add(t[k], *origin);
+                if (seen && seen->add(body.tree().corners[i][k])) {
+                    continue;
                 }
+                const Vec3 point = in_unit(body.placed(*places[k]));
+                if (!origin) {
+                    origin = point;
+                }
+                summit.add(point, *origin);
             }
             if (!is_a && !(-summit.rough() - summits[0].rough() >= needed)) {
                 return 0;

@@ -115,11 +115,6 @@ void DistanceQuery::measure_all(const Pair& pair) {
     }
 }
 
-Triangle DistanceQuery::in_unit(const Triangle& t) const {
-    const auto scaled = [&](const Vec3& v) { return unit_factors_[1] * (unit_factors_[0] * v); };
-    return {scaled(t[0]), scaled(t[1]), scaled(t[2])};
-}
-
 void DistanceQuery::measure_one(const Pair& pair, const Triangle& a, const Triangle& b) {
     const TriangleDistance found = measure(a, b);
     Pair measured = pair;
