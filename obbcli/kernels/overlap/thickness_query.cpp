@@ -116,6 +116,7 @@ void ThicknessQuery::visit(const Cell& cell) {
 void ThicknessQuery::look_at(const Cell& cell) {
     constexpr int kRounds = 5;
     constexpr double kProgress = 0.98;
+    constexpr double kGain = 0.1; // of the gap: rounds that close less are left to smaller cells
     box_ = {frames_[cell.frame], cell.low, cell.high};
     box_frame_ = cell.frame;
     bound_ = cell.bound;
@@ -127,8 +128,12 @@ void ThicknessQuery::look_at(const Cell& cell) {
         return;
     }
     for (int round = 0; round < kRounds && add_rows(); ++round) {
+        const double before = bound_;
         if (is_given_up()) {
             return;
+        }
+        if (round > 0 && before - bound_ < kGain * (before - target())) {
+            break;
         }
         if (round == 0) {
             const Shrunk shrunk = shrink();

@@ -87,7 +87,7 @@ class ThicknessQuery {
 
   private:
     static constexpr std::size_t kInherited = 8, kRows = 20;
-    static constexpr std::uint64_t kDoubtful = 8; // of so many cells one looks on both sides
+    static constexpr std::uint64_t kDoubtful = 32; // of so many cells one looks on both sides
 
     struct Cell {
         Vec3 low, high;
