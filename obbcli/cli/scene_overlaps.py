@@ -4,17 +4,62 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.cli.boundary import ExitCode
+from obbcli.accuracy import DEPTH_TOLERANCE
+from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
 from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.scene_files import decoded, mesh_sources
+from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
+    from obbcli.cli.options.accuracy import AccuracyOptions
     from obbcli.cli.options.option import CommonOptions
     from obbcli.cli.scene_files import Stamps
     from obbcli.report.record import Record, Source
     from obbcli.report.scene_overlaps import Found
     from obbcli.scene import Scene
     from obbcli.scene.overlaps import Overlaps
+
+
+def refuse_of_overlaps(accuracy: AccuracyOptions, duration: float | None) -> None:
+    """Refuse options that say nothing about overlaps at t = 0: none is ever ignored.
+
+    Raises:
+        UsageError: one is given.
+    """
+    from obbcli.questions.overlap.asked import CONCERNS
+
+    given = [name for name in accuracy.given() if name not in CONCERNS]
+    if duration is not None:
+        given.append("duration")
+    for name in given:
+        fault = "says nothing about overlaps at t = 0"
+        raise UsageError("--" + name.replace("_", "-"), fault, "leave it out")
+
+
+def overlaps_of(
+    scene: Scene,
+    pairs: list[tuple[str, str]] | None,
+    tolerance: float | None,
+    touch: tuple[float, float] | None,
+) -> Overlaps:
+    """Return the question about overlaps, not yet advanced.
+
+    Args:
+        scene: that it is about.
+        pairs: the bodies asked about, by name; None: all pairs.
+        tolerance: relative width of brackets; None: the default.
+        touch: gap and overlap that count as touching, mesh units; None: the default.
+
+    Raises:
+        UsageError: a number is refused, or a pair is none.
+    """
+    width = DEPTH_TOLERANCE if tolerance is None else tolerance
+    try:
+        with usage_errors():
+            return scene.overlaps(pairs, tolerance=width, touch=touch)
+    except SceneError as fault:
+        # What is typed is usage.
+        raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault
 
 
 def answer_overlaps(

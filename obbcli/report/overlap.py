@@ -92,7 +92,7 @@ def overlap_tables(record: Record) -> list[Table]:
         ("band", _band(result["band"])),
     ]
     if result["reason"] is not None:
-        rows.append(("no depths", result["reason"]))
+        rows.append(("depths" if result["thickness"] else "no depths", result["reason"]))
     if not result["complete"]:
         rows.append(("limit", "a limit was reached: brackets are wider than asked for"))
     return [Table([*rows, *_cost_rows(record["stats"])])]

@@ -181,8 +181,14 @@ def overlap_exit_code(result: Record, *, asked: bool, limit: float | None = None
 
 
 def _hide_what_says_nothing() -> None:
-    """Keep options that are only known to be refused by name out of the help."""
+    """Keep options that are only known to be refused by name out of the help.
+
+    The clearance is asked about otherwise than in other questions.
+    """
     for param in command.params:
+        if param.name == "clearance":
+            assert isinstance(param, click.Option)
+            param.help = "Bodies no further apart are near, in mesh units [default: 0]."
         group = getattr(param, "group", "")
         if group == "Motion" or (group == "Accuracy" and param.name not in _CONCERNS):
             assert isinstance(param, click.Option)

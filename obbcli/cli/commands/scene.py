@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from obbcli.accuracy import DEPTH_TOLERANCE
-from obbcli.cli.boundary import ExitCode, UsageError, usage_errors
+from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
 from obbcli.cli.options.option import Command, common_options, option, verify_option
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from obbcli.report.scene import Answer
     from obbcli.scene import Scene
     from obbcli.scene.contact_stream import ContactStream
-    from obbcli.scene.overlaps import Overlaps
     from obbcli.scene.results import SceneContact
 
 
@@ -134,17 +133,19 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     """
     wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
     _refuse_contradictions(wanted)
+    if wanted.overlaps:
+        from obbcli.cli.scene_overlaps import refuse_of_overlaps
+
+        refuse_of_overlaps(accuracy, flags["duration"])
     scene, source, stamps = read_scene(
         file, accuracy, flags["duration"], checked_sag(flags["sag"]), verify=not flags["no_verify"]
     )
     _refuse_of_scene(wanted, scene)
     keep_inputs(common.output, (file, *stamps))
     if wanted.overlaps:
-        from obbcli.cli.scene_overlaps import answer_overlaps
+        from obbcli.cli.scene_overlaps import answer_overlaps, overlaps_of
 
-        given = {"tolerance": wanted.tolerance, "touch": wanted.touch}
-        asked = {name: value for name, value in given.items() if value is not None}
-        overlaps = _overlaps(scene, wanted, asked)
+        overlaps = overlaps_of(scene, _pairs(scene, wanted), wanted.tolerance, wanted.touch)
         return answer_overlaps(
             overlaps, scene, source, stamps, common, exit_code=flags["exit_code"]
         )
@@ -194,15 +195,6 @@ def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
     if wanted.all_contacts and scene.accuracy.method == "sampled":
         fault = "lists contacts of triangles, and sampling finds the first contact alone"
         raise UsageError("--all-contacts", fault, "ask for --method certified")
-
-
-def _overlaps(scene: Scene, wanted: _Wanted, asked: dict[str, Any]) -> Overlaps:
-    """Return the question about overlaps, not yet advanced."""
-    try:
-        with usage_errors():
-            return scene.overlaps(_pairs(scene, wanted), **asked)
-    except SceneError as fault:
-        raise UsageError(f"--{fault.where}", fault.fault, fault.remedy) from fault
 
 
 def _pairs(scene: Scene, wanted: _Wanted) -> list[tuple[str, str]] | None:

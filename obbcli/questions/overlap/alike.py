@@ -12,6 +12,7 @@ from obbcli.questions.overlap.same import posed_bounds
 if TYPE_CHECKING:
     from obbcli.answers.status import Inner
     from obbcli.questions.overlap.depths import Depths
+    from obbcli.questions.overlap.pursuit import Pursuit
     from obbcli.questions.pair_question import PairQuestion
 
 
@@ -37,11 +38,18 @@ def are_alike(pair: PairQuestion, depths: Depths, limit: float) -> bool | None:
     return True
 
 
-def lies_in(pair: PairQuestion, inner: Inner, limit: float) -> bool:
+def lies_in(pair: PairQuestion, inner: Inner, limit: float, pursuit: Pursuit) -> bool | None:
     """Return whether all vertices of a solid lie in the other, or no further outside than a limit.
 
     Asked where the other's surface reaches into the solid no deeper than the limit: what lies
-    outside has vertices then, but for bridges that are no thicker than twice the limit.
+    outside has vertices then, but for bridges that are no thicker than twice the limit. None where
+    a limit of work was met.
+
+    Args:
+        pair: A and B, closed.
+        inner: which solid.
+        limit: mesh units.
+        pursuit: the budget.
     """
     place = 0 if inner == "a" else 1
     body, tree = pair.bodies[place], pair.trees[place]
@@ -52,6 +60,8 @@ def lies_in(pair: PairQuestion, inner: Inner, limit: float) -> bool:
     used = np.unique(tree.mesh.triangles)
     points = body.pose.apply(tree.mesh.vertices[used])
     for point in points.tolist():
+        if not pursuit.take_step():
+            return None
         if probe.winding(point) == 0:
             here = (np.ldexp(point, -exponent) - origin).tolist()
             if probe.nearest(here, 0.0, near)[0] > near:

@@ -70,6 +70,14 @@ class Pursuit:
         self._budget.spend(taken() - before)
         return True
 
+    def take_step(self) -> bool:
+        """Take a step outside of the kernels; return whether the budget allows it."""
+        if self._budget.is_over:
+            self.is_complete = False
+            return False
+        self._budget.spend(1)
+        return True
+
     def count(self, counts: tuple[int, int, int, int, int]) -> None:
         """Add what a search has cost."""
         self.counts += Counts(*counts)

@@ -167,10 +167,13 @@ class Solids:
         if not is_deep:
             return "touching", None
         # Which surface does not reach into the other solid: that one may hold the other.
-        if not into_a and lies_in(self._pair, "a", self._limit):
-            return "contained", "a"
-        if not into_b and lies_in(self._pair, "b", self._limit):
-            return "contained", "b"
+        sides: tuple[tuple[Inner, bool], ...] = (("a", into_a), ("b", into_b))
+        for inner, is_entered in sides:
+            lies = not is_entered and lies_in(self._pair, inner, self._limit, self._pursuit)
+            if lies is None:
+                return "unresolved", None
+            if lies:
+                return "contained", inner
         return "overlapping", None
 
 

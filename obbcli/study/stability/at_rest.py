@@ -130,7 +130,9 @@ class RestBattery:
         if self._ask_word == "distance":
             return distance(a, b, pair.accuracy)
         touch = self._touch and (self._touch[0] * length, self._touch[1] * length)
-        return overlap_of(PairQuestion.of(a, b, 0.0, pair.accuracy), Asked(touch=touch))
+        return overlap_of(
+            PairQuestion.of(a, b, 0.0, pair.accuracy), Asked(touch=touch, values="deep")
+        )
 
     def _try(self, extreme: Extreme) -> RestRow:
         changed = extreme.change()
