@@ -199,15 +199,6 @@ def is_overload(node: ast.stmt) -> bool:
     return any(ast.unparse(one).rpartition(".")[2] == "overload" for one in decorators)
 
 
-# Compilers align them by the machine that the rest of a file is compiled for, while functions for
-# wider registers load them as aligned for these.
-def test_members_of_wide_registers_say_how_they_are_aligned() -> None:
-    member = re.compile(r"^ +(?:(?:std::array<)?Four(?:Mask)?\b[^(=\n]*);", re.MULTILINE)
-
-    headers = [name for name in KERNEL_SOURCES if name.endswith(".hpp")]
-    assert [n for n in headers if member.search((ROOT / n).read_text(encoding="utf-8"))] == []
-
-
 def test_files_are_not_too_long() -> None:
     def length(name: str) -> int:
         return (ROOT / name).read_text(encoding="utf-8").count("\n")

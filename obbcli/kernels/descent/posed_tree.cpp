@@ -13,31 +13,15 @@ void PosedTree::set_frame(const Mat3& matrix, Vec3 offset, int exponent) {
     vertex_scales_ = {power_of_two(half), power_of_two(-exponent - half)};
 }
 
-template <typename Real>
-BasicObb<Real> PosedTree::in_frame(BasicObb<Real> box) const {
-    const auto turned = [&](Vector3<Real> v) {
-        const auto& m = matrix_.rows;
-        return Vector3<Real>{m[0].x * v.x + m[0].y * v.y + m[0].z * v.z,
-                             m[1].x * v.x + m[1].y * v.y + m[1].z * v.z,
-                             m[2].x * v.x + m[2].y * v.y + m[2].z * v.z};
-    };
-    const auto scaled_by = [&](Vector3<Real> v) {
-        return Vector3<Real>{scale_ * v.x, scale_ * v.y, scale_ * v.z};
-    };
-    box.center = scaled_by(box.center);
-    box.half_extents = scaled_by(box.half_extents);
+Obb PosedTree::box(const Node& node) const {
+    Obb box{scale_ * node.center, axes_of(node.rotation), scale_ * half_extents_of(node)};
     if (is_moved_) {
-        const Vector3<Real> c = turned(box.center);
-        box.center = {c.x + offset_.x, c.y + offset_.y, c.z + offset_.z};
-        for (Vector3<Real>& axis : box.axes) {
-            axis = turned(axis);
+        box.center = matrix_ * box.center + offset_;
+        for (Vec3& axis : box.axes) {
+            axis = matrix_ * axis;
         }
     }
     return box;
-}
-
-Obb PosedTree::box(const Node& node) const {
-    return in_frame(Obb{node.center, axes_of(node.rotation), half_extents_of(node)});
 }
 
 Triangle PosedTree::triangle_in_frame(const NodeRef& ref) const {

@@ -46,9 +46,6 @@ class PosedTree {
     Mat3 matrix_ = Mat3::identity();
     Vec3 offset_{0, 0, 0};
     bool is_moved_ = false;
-    template <typename Real>
-    [[nodiscard]] BasicObb<Real> in_frame(BasicObb<Real> box) const;
-
     // Nodes are in the tree's unit; vertices in mesh units need two factors, as one may overflow.
     double scale_ = 1;
     std::array<double, 2> vertex_scales_{1, 1};

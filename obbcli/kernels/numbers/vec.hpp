@@ -7,12 +7,9 @@
 
 namespace obb {
 
+// Of doubles, or of numbers of more digits.
 template <typename Real>
-inline constexpr std::size_t kAlignment = alignof(Real);
-
-// Of doubles, or of packs of doubles where several shapes are treated at once.
-template <typename Real>
-struct alignas(kAlignment<Real>) Vector3 {
+struct Vector3 {
     Real x, y, z;
 
     [[nodiscard]] constexpr Real operator[](std::size_t k) const {

@@ -1,20 +1,16 @@
 // An oriented box taken literally: { center + sum_i y_i axes[i] : |y_i| <= half_extents[i] }.
 #pragma once
 
-#include "numbers/pack.hpp"
 #include "numbers/vec.hpp"
 
 #include <array>
 
 namespace obb {
 
-template <typename Real>
-struct BasicObb {
-    Vector3<Real> center;
-    std::array<Vector3<Real>, 3> axes;
-    Vector3<Real> half_extents;
+struct Obb {
+    Vec3 center;
+    std::array<Vec3, 3> axes;
+    Vec3 half_extents;
 };
-
-using Obb = BasicObb<double>;
 
 } // namespace obb
