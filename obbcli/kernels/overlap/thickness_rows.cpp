@@ -169,13 +169,18 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& up, const NodeRef&
     probe.is_oriented = true;
     bool is_lower = true; // than the same row of a larger cell
     BoundRow row;
+    row.normal = found->up;
     row.height = found->height + 2 * lost;
     for (std::size_t k = 0; k < held_.size(); ++k) {
         const BoundRow& other = rows_[held_[k].id];
         if (other.is_escape && other.body == body && dot(other.normal, found->up) > kSame) {
-            // The slope is of use even where the height is that of the larger cell.
+            // The slope is of use even where the height is that of the larger cell. That height
+            // holds along its own direction only, of which this one may differ by 1e-6.
             is_lower = row.height < other.height;
-            row.height = std::min(row.height, other.height);
+            if (!is_lower) {
+                row.normal = other.normal;
+                row.height = other.height;
+            }
             rows_.drop(held_[k].id);
             held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(k));
             break;
@@ -184,7 +189,6 @@ bool ThicknessQuery::add_escape(std::size_t body, const Vec3& up, const NodeRef&
     row.triangle = triangle;
     row.body = static_cast<std::uint8_t>(body);
     row.is_escape = true;
-    row.normal = found->up;
     row.slope =
         slope_of(unit_normal(surfaces_[body].triangle(probe.escapes.under(*found))), found->up);
     given_up_ = std::max(given_up_, lost);
