@@ -6,6 +6,7 @@
 #include "overlap/winding_number.hpp"
 #include "shapes/extremes.hpp"
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -67,6 +68,7 @@ class EscapeSearch {
 
     // Of the present cell: its shadow and its range of heights.
     Prism prism_;
+    std::array<double, 2> middle_{0, 0};
     double bottom_ = 0, top_ = 0;
 
     HeightSearch heights_;

@@ -11,37 +11,49 @@ namespace obb {
 namespace {
 
 // No coordinate exceeds 2 here, u = 2^-53. Heights and places across are products of three terms,
-// off by 3 u sqrt(3) 2 < 12 u, and posed corners by 2 u more. Where an edge leaves the rectangle it
-// is cut at t = (limit - a) / (b - a): the parts of the quotient are off by 28 u and 2 u, so that
-// the place of the cut, t (b - a), is off by less than 40 u, whatever the edge's slope; four cuts
-// one after the other by less than 160 u. The height there is off by 8 u besides. A rectangle grown
-// by 256 u, 16 u of which are promised, and heights grown by 64 u are therefore safe.
+// off by 3 u sqrt(3) 2 < 12 u, and posed corners by 2 u more. Where an edge leaves the shadow it is
+// cut at t = (limit - a) / (b - a), of products a and b with a side that are off by 8 u more: the
+// parts of the quotient are off by 36 u and 2 u, so that the place of the cut, t (b - a), is off by
+// less than 48 u, whatever the edge's slope. The corner made there is off its edge by 8 u, and
+// those of twelve cuts one after the other by less than 96 u, in place and height. A shadow grown
+// by 256 u, 64 u of which are promised, and heights grown by 128 u are therefore safe.
 constexpr double kAcross = 256 * kUnitRoundoff;
-constexpr double kUp = 64 * kUnitRoundoff;
+constexpr double kUp = 128 * kUnitRoundoff;
 
 struct Corner {
     std::array<double, 2> across;
     double height;
 };
 
-// A triangle cut by four lines has at most seven corners.
+// A triangle cut by twelve lines has at most fifteen corners.
 struct Polygon {
-    std::array<Corner, 8> corners;
+    std::array<Corner, 16> corners;
     std::size_t count = 0;
 };
 
-// What of a polygon lies within sign * across[axis] <= limit.
-void cut(Polygon& polygon, std::size_t axis, double sign, double limit) {
+// What of a polygon is on the inner side.
+void cut(Polygon& polygon, const Prism::Side& side) {
+    std::array<double, 16> places;
+    bool is_cut = false;
+    for (std::size_t k = 0; k < polygon.count; ++k) {
+        const auto& across = polygon.corners[k].across;
+        places[k] = side.v * across[0] + side.w * across[1];
+        is_cut = is_cut || !(places[k] <= side.limit);
+    }
+    if (!is_cut) {
+        return;
+    }
     Polygon rest;
     for (std::size_t k = 0; k < polygon.count; ++k) {
+        const std::size_t next = k + 1 < polygon.count ? k + 1 : 0;
         const Corner& p = polygon.corners[k];
-        const Corner& q = polygon.corners[(k + 1) % polygon.count];
-        const double a = sign * p.across[axis], b = sign * q.across[axis];
-        if (a <= limit && rest.count < rest.corners.size()) {
+        const Corner& q = polygon.corners[next];
+        const double a = places[k], b = places[next];
+        if (a <= side.limit && rest.count < rest.corners.size()) {
             rest.corners[rest.count++] = p;
         }
-        if ((a <= limit) != (b <= limit) && rest.count < rest.corners.size()) {
-            const double t = std::clamp((limit - a) / (b - a), 0.0, 1.0);
+        if ((a <= side.limit) != (b <= side.limit) && rest.count < rest.corners.size()) {
+            const double t = std::clamp((side.limit - a) / (b - a), 0.0, 1.0);
             Corner& r = rest.corners[rest.count++];
             for (std::size_t i = 0; i < 2; ++i) {
                 r.across[i] = p.across[i] + t * (q.across[i] - p.across[i]);
@@ -54,7 +66,7 @@ void cut(Polygon& polygon, std::size_t axis, double sign, double limit) {
 
 } // namespace
 
-// Where in height the surface of a triangle may be over the rectangle; low above high for nowhere.
+// Where in height the surface of a triangle may be over the shadow; low above high for nowhere.
 HeightSearch::Span HeightSearch::span_of(const Triangle& t, const Prism& prism) {
     Polygon polygon;
     polygon.count = 3;
@@ -63,9 +75,13 @@ HeightSearch::Span HeightSearch::span_of(const Triangle& t, const Prism& prism) 
         Corner& c = polygon.corners[k];
         c = {{dot(prism.across[0], t[k]), dot(prism.across[1], t[k])}, dot(prism.up, t[k])};
     }
-    for (std::size_t axis = 0; axis < 2 && polygon.count > 0; ++axis) {
-        cut(polygon, axis, 1, prism.high[axis] + kAcross);
-        cut(polygon, axis, -1, kAcross - prism.low[axis]);
+    cut(polygon, {1, 0, prism.high[0] + kAcross});
+    cut(polygon, {-1, 0, kAcross - prism.low[0]});
+    cut(polygon, {0, 1, prism.high[1] + kAcross});
+    cut(polygon, {0, -1, kAcross - prism.low[1]});
+    for (std::size_t k = 0; k < prism.side_count && polygon.count > 0; ++k) {
+        const Prism::Side& side = prism.sides[k];
+        cut(polygon, {side.v, side.w, side.limit + kAcross});
     }
     for (std::size_t k = 0; k < polygon.count; ++k) {
         whole.low = smaller(whole.low, polygon.corners[k].height - kUp);
@@ -93,6 +109,13 @@ HeightSearch::Span HeightSearch::span_of(const Obb& box, const Prism& prism) con
         const double place = dot(prism.across[i], box.center);
         const double reach = radius(prism.across[i]) + kAcross;
         if (place - reach > prism.high[i] || place + reach < prism.low[i]) {
+            return {HUGE_VAL, -HUGE_VAL};
+        }
+    }
+    for (std::size_t k = 0; k < prism.side_count; ++k) {
+        const Prism::Side& side = prism.sides[k];
+        const Vec3 along = side.v * prism.across[0] + side.w * prism.across[1];
+        if (dot(along, box.center) - radius(along) - kAcross > side.limit) {
             return {HUGE_VAL, -HUGE_VAL};
         }
     }

@@ -1,4 +1,4 @@
-// Between which heights does no surface come over a rectangle? What an escape row needs.
+// Between which heights does no surface come over a shadow? What an escape row needs.
 #pragma once
 
 #include "overlap/solid_surface.hpp"
@@ -10,16 +10,25 @@
 
 namespace obb {
 
-// An upright prism over a rectangle: heights run along `up`, the rectangle is a range along each of
-// `across`. The three are of length 1 and at right angles, both to 16 u.
+// An upright prism over a convex shadow: heights run along `up`, places are pairs of numbers along
+// `across`. The three are of length 1 and at right angles, both to 16 u. The shadow is what of a
+// rectangle, a range along each of `across`, is on the inner side of all `sides`.
 struct Prism {
+    // The places with v * place[0] + w * place[1] <= limit; (v, w) is at most 1 long, to 4 u.
+    struct Side {
+        double v, w, limit;
+    };
+    static constexpr std::size_t kMostSides = 8;
+
     Vec3 up;
     std::array<Vec3, 2> across;
     std::array<double, 2> low, high;
+    std::array<Side, kMostSides> sides;
+    std::size_t side_count = 0;
 };
 
-// No point of the surface over the rectangle has a height between these two: the surface of the
-// posed vertices, over the rectangle grown by 16 u, with everything that rounds on the safe side.
+// No point of the surface over the shadow has a height between these two: the surface of the
+// posed vertices, over the shadow grown by 64 u, with everything that rounds on the safe side.
 struct HeightGap {
     double from, to;
     NodeRef under; // a triangle that is highest below, or one of a box that is
