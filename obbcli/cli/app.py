@@ -16,6 +16,7 @@ _GROUPS = {
         "first-contact": "first_contact",
         "distance": "distance",
         "overlap": "overlap",
+        "clearance": "clearance",
     },
     "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},

@@ -75,6 +75,34 @@ def proving(duration: float, what: str, *, wanted: bool) -> Iterator[Callable[[f
 
 
 @contextmanager
+def narrowing(*, wanted: bool) -> Iterator[Callable[[float, float], None]]:
+    """Give what shows between which bounds a length lies, once the body has run for a second.
+
+    Args:
+        wanted: False draws nothing.
+
+    Yields:
+        a function that takes both bounds, mesh units.
+    """
+    due = time.monotonic() + PATIENCE
+    is_drawn = wanted and _is_terminal()
+    bars: list[Progress] = []
+    with ExitStack() as stack:
+
+        def show(low: float, high: float) -> None:
+            if not is_drawn or time.monotonic() < due:
+                return
+            if not bars:
+                bars.append(stack.enter_context(_progress()))
+                bars[0].add_task("", total=1.0)
+            text = f"least distance between {low:.6g} and {high:.6g}"
+            share = low / high if high else 1.0
+            bars[0].update(bars[0].task_ids[0], description=text, completed=share)
+
+        yield show
+
+
+@contextmanager
 def counting(*, wanted: bool) -> Iterator[Callable[[float, int], None]]:
     """Give what shows how many rows are answered, how fast, and how long the rest takes.
 

@@ -15,6 +15,7 @@ TOPICS = (
     "options",
     "scenes",
     "overlap",
+    "clearance",
     "sweeps",
     "pictures",
     "python",

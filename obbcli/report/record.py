@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from obbcli.accuracy import Accuracy
+    from obbcli.answers.clearance import LeastClearance
     from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Contact
     from obbcli.answers.counts import QueryStats
@@ -115,7 +116,9 @@ def answer_document(
     )
 
 
-def part_names(answer: Collision | Contact | Distance, sources: Iterable[Source]) -> Record:
+def part_names(
+    answer: Collision | Contact | Distance | LeastClearance, sources: Iterable[Source]
+) -> Record:
     """Return the selected parts that an answer names; no keys where no part was selected.
 
     Args:

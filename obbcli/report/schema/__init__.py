@@ -22,6 +22,7 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 # Name: where it is written, and which module here tells it. Imported when asked for: help is not.
 _DOCUMENTS = {
     "build": ("obbtree build --json", "files"),
+    "clearance": ("obbtree clearance --json", "clearances"),
     "collide": ("obbtree collide --json", "answers"),
     "distance": ("obbtree distance --json", "answers"),
     "error": ("standard error of a command with --json that fails", "files"),
