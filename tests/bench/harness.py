@@ -33,6 +33,7 @@ PACKAGES = (
     "pyvista",
     "trimesh",
     "meshio",
+    "manifold3d",
 )
 
 

@@ -24,6 +24,7 @@ import bench_first_contact
 import bench_fits
 import bench_formats
 import bench_hostile
+import bench_overlap
 import bench_primitives
 import bench_scene
 import bench_screws
@@ -42,6 +43,7 @@ BENCHES = {
     "build": lambda options: bench_build.run(options.quick),
     "static": lambda options: bench_static.run(options.quick),
     "distance": lambda options: bench_distance.run(options.quick),
+    "overlap": lambda options: bench_overlap.run(options.quick),
     "first-contact": lambda options: bench_first_contact.run(
         options.quick, options.queries, options.meshes
     ),
