@@ -121,6 +121,8 @@ class Region:
         thickness: mesh units; (lo, hi), proven: the diameter of its largest ball.
         triangle_a: row of A's mesh file that is nearest to the point.
         triangle_b: the same of B.
+        part_a: path of the part of A that `triangle_a` is of, where `FILE#PATTERN` selected parts.
+        part_b: path of the part of B that `triangle_b` is of, likewise.
     """
 
     bounds: tuple[Vector, Vector]
@@ -128,6 +130,8 @@ class Region:
     thickness: Bounds
     triangle_a: int
     triangle_b: int
+    part_a: str | None = None
+    part_b: str | None = None
 
 
 class OverlapStats(NamedTuple):

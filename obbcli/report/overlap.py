@@ -177,7 +177,8 @@ def _region_rows(result: Record) -> list[tuple[str, str]]:
     rows = [("regions", told)]
     for number, region in enumerate(regions[:_MOST_REGIONS], 1):
         thick = bracket(region["thickness"])
-        rows.append((f"region {number}", f"thickness {thick}, at {point(region['point'])}"))
+        place = f"at {point(region['point'])}{_parts(region)}"
+        rows.append((f"region {number}", f"thickness {thick}, {place}"))
     if len(regions) > _MOST_REGIONS:
         rows.append(("", f"{count(len(regions) - _MOST_REGIONS)} more, with --json"))
     return rows

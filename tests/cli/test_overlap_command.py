@@ -132,3 +132,15 @@ def test_resolution_without_regions_is_refused(here, obbtree):
     assert ended.code == 2
     assert "add --regions" in ended.err
     assert obbtree("overlap", *APART, "--regions", "--resolution", 0).code == 2
+
+
+def test_regions_name_the_selected_parts_that_they_are_of(here, obbtree):
+    (here / "two.obj").write_text(objects(left=0.0, right=2.0))
+    (here / "long.obj").write_text(obj([(4 * x - 0.5, y + 0.5, z) for x, y, z in cube()]))
+    words = ("overlap", "two.obj#*", "long.obj", "--regions", "--resolution", 0.25)
+
+    regions = obbtree(*words, "--json").json["result"]["regions"]
+
+    assert sorted(region["part_a"] for region in regions) == ["left", "right"]
+    assert not any("part_b" in region for region in regions)
+    assert "(left of A)" in obbtree(*words).out

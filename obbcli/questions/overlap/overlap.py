@@ -127,12 +127,14 @@ def _with_parts(found: dict[str, Any], trees: Trees) -> dict[str, Any]:
     a, b = trees
     if not (a.parts or b.parts):
         return found
-    named = {
-        name: replace(one, part_a=a.part_of(one.triangle_a), part_b=b.part_of(one.triangle_b))
-        for name, one in found.items()
-        if isinstance(one, (Gap, Depth))
-    }
-    return found | named
+
+    def named(one: Any) -> Any:
+        return replace(one, part_a=a.part_of(one.triangle_a), part_b=b.part_of(one.triangle_b))
+
+    told = {name: named(one) for name, one in found.items() if isinstance(one, (Gap, Depth))}
+    if found.get("regions"):
+        told["regions"] = tuple(map(named, found["regions"]))
+    return found | told
 
 
 def _stats(pair: PairQuestion, pursuit: Pursuit, seconds: dict[str, float]) -> OverlapStats:

@@ -25,7 +25,7 @@ def overlap_fields() -> dict[str, Schema]:
         band=record(schemas_of(Band)),
         distance=record(schemas_of(Gap), optional=_PARTS),
         volume=record(schemas_of(Volume)),
-        regions=list_of(record(schemas_of(Region))),
+        regions=list_of(record(schemas_of(Region), optional=_PARTS)),
         separation_along=record(schemas_of(SeparationAlong)),
         stats=ref("stats"),
         **dict.fromkeys(_DEPTH_FIELDS, record(schemas_of(Depth), optional=_PARTS)),
