@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from meshes.solids import joined
 from movers.meshes import box, cube, disc, octahedron, tetrahedron
 from oracles.ball import distances_from, largest_ball, planes_of
 from oracles.solid import winding_by_angles, winding_number
@@ -118,6 +119,24 @@ def test_floor_of_nothing_is_a_bracket_all_the_same():
     low, high = answer(a, b, floor=0.0, max_cells=300).bounds
     assert low == 0
     assert high <= 1e-12
+
+
+def test_decision_below_rounding_is_left_open():
+    a, b = cube(), (cube()[0] + [2.0, 0.5, 0.25], cube()[1])
+    asked = answer(a, b, deeper_than=0.0, floor=0.0, max_cells=300)
+    assert asked.deeper is None
+    assert answer(a, b, deeper_than=0.0, floor=1e-12).deeper is False
+
+
+def test_cavity_parts_and_internal_faces_count_as_surfaces():
+    # The doubled face between two boxes of one mesh parts the balls: a proven lower end.
+    two = joined(box((0, 0, 0), (1, 1, 1)), box((1, 0, 0), (2, 1, 1)))
+    low, high = answer(two, cube(5)).bounds
+    assert low <= 1 <= high
+    # Boxes that overlap by half: no ball that no surface passes through is thicker than 1/2:
+    crossed = joined(box((0, 0, 0), (1, 1, 1)), box((0.5, 0, 0), (1.5, 1, 1)))
+    low, high = answer(crossed, cube(5)).bounds
+    assert low <= 0.5 <= high
 
 
 def test_poses_far_away_keep_what_doubles_keep():

@@ -90,7 +90,8 @@ std::optional<bool> ThicknessQuery::is_deeper() const {
     if (best_.radius > *wanted_) {
         return true;
     }
-    return is_answered() ? std::optional<bool>(false) : std::nullopt;
+    // With a floor below rounding what was given up may exceed the limit: then nothing is proven.
+    return is_answered() && given_up_ <= *limit_ ? std::optional<bool>(false) : std::nullopt;
 }
 
 std::uint64_t ThicknessQuery::rays() const {
