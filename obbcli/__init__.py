@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from obbcli.answers.clearance import Clearance
     from obbcli.answers.collision import Collision
     from obbcli.answers.contact import Contact, FirstContact
+    from obbcli.answers.contact_piece import ContactPiece
     from obbcli.answers.counts import QueryStats
     from obbcli.answers.distance import Distance
     from obbcli.answers.overlap import Overlap
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from obbcli.questions.contacts import contacts
     from obbcli.questions.distance import distance
     from obbcli.questions.first_contact import Query, first_contact
+    from obbcli.questions.intervals.contact_intervals import contact_intervals
     from obbcli.questions.notes import notes
     from obbcli.questions.overlap.overlap import overlap
     from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
@@ -59,6 +61,7 @@ _HOMES = {
     "ClearanceQuery": "questions.clearance.query",
     "Collision": "answers.collision",
     "Contact": "answers.contact",
+    "ContactPiece": "answers.contact_piece",
     "Distance": "answers.distance",
     "FirstContact": "answers.contact",
     "Mesh": "mesh",
@@ -83,6 +86,7 @@ _HOMES = {
     "UnresolvedError": "errors",
     "clearance": "questions.clearance.clearance",
     "collide": "questions.collide",
+    "contact_intervals": "questions.intervals.contact_intervals",
     "contacts": "questions.contacts",
     "distance": "questions.distance",
     "first_contact": "questions.first_contact",
@@ -105,6 +109,7 @@ __all__ = [
     "ClearanceQuery",
     "Collision",
     "Contact",
+    "ContactPiece",
     "Distance",
     "FirstContact",
     "Mesh",
@@ -130,6 +135,7 @@ __all__ = [
     "__version__",
     "clearance",
     "collide",
+    "contact_intervals",
     "contacts",
     "distance",
     "first_contact",

@@ -17,6 +17,7 @@ _GROUPS = {
         "distance": "distance",
         "overlap": "overlap",
         "clearance": "clearance",
+        "intervals": "intervals",
     },
     "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},

@@ -16,6 +16,7 @@ TOPICS = (
     "scenes",
     "overlap",
     "clearance",
+    "intervals",
     "sweeps",
     "pictures",
     "python",

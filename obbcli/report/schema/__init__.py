@@ -28,6 +28,7 @@ _DOCUMENTS = {
     "error": ("standard error of a command with --json that fails", "files"),
     "first-contact": ("obbtree first-contact --json", "answers"),
     "info": ("obbtree info --json", "files"),
+    "intervals": ("obbtree intervals --json", "intervals"),
     "overlap": ("obbtree overlap --json", "overlaps"),
     "scene": ("obbtree scene --json", "answers"),
     "scene-overlaps": ("obbtree scene --overlaps --json", "overlaps"),
