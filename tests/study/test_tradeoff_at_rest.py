@@ -6,7 +6,7 @@ import pytest
 from movers.meshes import box
 
 from obbcli import Accuracy, Body, Mesh, MotionError, Pose, tradeoff
-from obbcli.study.tradeoff import at_rest
+from obbcli.study.tradeoff import rest_judge
 
 UNIT = box((0, 0, 0), (1, 1, 1))
 PAIR = Mesh(*UNIT), Body(Mesh(*UNIT), Pose([0.3, -0.2, 0.9], [0.5, 0.4, 0.3]))
@@ -43,7 +43,7 @@ def test_distance_is_asked_at_every_tolerance_and_depth() -> None:
 
 
 def test_bracket_beside_the_narrowest_is_a_fault(monkeypatch) -> None:
-    brackets = at_rest._brackets
+    brackets = rest_judge.brackets
     calls = []
 
     def off(answer):
@@ -54,7 +54,7 @@ def test_bracket_beside_the_narrowest_is_a_fault(monkeypatch) -> None:
             found["thickness"] = 2 * high, 2 * high + low
         return found
 
-    monkeypatch.setattr(at_rest, "_brackets", off)
+    monkeypatch.setattr(rest_judge, "brackets", off)
     found = tradeoff(*PAIR, ask="overlap", budget=30)
 
     assert [len(row.faults) for row in found.faulty] == [1]

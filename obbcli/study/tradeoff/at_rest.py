@@ -19,6 +19,7 @@ from obbcli.questions.overlap.asked import Asked, refuse_other_accuracy
 from obbcli.questions.overlap.band import pair_size
 from obbcli.questions.overlap.overlap import overlap_of
 from obbcli.questions.pair_question import PairQuestion, duration_of
+from obbcli.study.tradeoff.rest_judge import brackets, contradictions
 from obbcli.study.tradeoff.taking_turns import no_collections
 from obbcli.study.tradeoff.trials import Timing, front_of
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from obbcli.answers.distance import Distance
-    from obbcli.answers.overlap import Bounds
     from obbcli.motion.body import Body, Shape
     from obbcli.study.asks import RestAsk
     from obbcli.study.tradeoff.measuring import Progress
@@ -38,7 +38,6 @@ _DISTANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, None)
 _DEPTHS = (2, 4, 6, 8, 12, 16)
 # Of the depth that was found: decisions just beside it, and further off.
 _SHARES = (0.5, 0.9, 1.1, 2.0)
-_NUMBERS = ("distance", "thickness", "protrusion_a", "protrusion_b", "volume")
 _ROUNDS = 9
 
 
@@ -249,8 +248,8 @@ class RestStudy:
     def _row(self, setting: RestSetting) -> RestTrial:
         answer, (first, *times) = self._answers[setting], self._times[setting]
         assert self._reference is not None
-        checked, faults = _contradictions(answer, setting.asked, self._reference)
-        bounds = _brackets(answer)
+        checked, faults = contradictions(answer, setting.asked, self._reference)
+        bounds = brackets(answer)
         widths = [high - low for name, (low, high) in bounds.items() if name != "volume"]
         # A decision tells no value that could be narrow.
         width = None if setting.asked.deeper_than is not None else max(widths, default=math.inf)
@@ -266,44 +265,3 @@ class RestStudy:
             faults=tuple(faults),
             warm=Timing.of(times, first),
         )
-
-
-def _brackets(answer: Distance | Overlap) -> dict[str, Bounds]:
-    """Return the brackets of an answer by their names; ends that are not known are infinite."""
-    if not isinstance(answer, Overlap):
-        return {"distance": answer.bounds}
-    found = {name: getattr(answer, name) for name in _NUMBERS}
-    return {
-        name: (one.bounds[0], math.inf if one.bounds[1] is None else one.bounds[1])
-        for name, one in found.items()
-        if one is not None
-    }
-
-
-def _contradictions(
-    answer: Distance | Overlap, asked: Asked, reference: Distance | Overlap
-) -> tuple[int, list[str]]:
-    """Return how many claims were checked, and those that the reference contradicts."""
-    own, known = _brackets(answer), _brackets(reference)
-    shared = [name for name in own if name in known]
-    faults = [
-        f"{name} is said to be in {own[name]}, and is in {known[name]}"
-        for name in shared
-        if own[name][0] > known[name][1] or known[name][0] > own[name][1]
-    ]
-    checked = len(shared)
-    if not isinstance(answer, Overlap) or not isinstance(reference, Overlap):
-        return checked, faults
-    if "unresolved" not in (answer.relation, reference.relation):
-        checked += 1
-        if answer.relation != reference.relation:
-            faults.append(f"is said to be {answer.relation}, and is {reference.relation}")
-    if answer.deeper is not None and asked.deeper_than is not None:
-        checked += 1
-        depths = [known[name] for name in known if name not in ("distance", "volume")]
-        room = asked.deeper_than + 2.0 * answer.band.slack
-        if answer.deeper and all(high < asked.deeper_than for _, high in depths):
-            faults.append(f"is said to be deeper than {asked.deeper_than!r}, and is not")
-        if not answer.deeper and any(low > room for low, _ in depths):
-            faults.append(f"is said to be no deeper than {asked.deeper_than!r}, and is")
-    return checked, faults
