@@ -22,9 +22,10 @@ struct MovingFrame {
     Vec3 closing_velocity; // B's linear velocity less A's
     const Spin* spin_a;
     const Spin* spin_b;
-    double remaining; // time left
-    double relative;  // rounding of a projection, times the sizes in play
-    double absolute;  // rounding of the positions themselves, plus the clearance asked for
+    double remaining;        // time left
+    double relative;         // rounding of a projection, times the sizes in play
+    double absolute;         // rounding of the positions themselves, plus the clearance asked for
+    bool seeks_near = false; // whether boxes are looked at along their nearest points as well
 };
 
 // The positive root of g + w h - a h^2 / 2 for g > 0 and a >= 0: infinite where the gap never

@@ -211,6 +211,38 @@ OBB_INLINE Real step_along(const Lanes3<Real>& n, const OwnReach<Real>& reach, c
     return select(is_open, step, zero);
 }
 
+// Unit directions from own boxes to those across, between points that are nearly the nearest; 0
+// where these meet. Any direction would do, shorter than 1 by more than its rounding.
+template <typename Real>
+OBB_INLINE Lanes3<Real> near_direction(const Own<Real>& own, const Facing<Real>& f) {
+    const auto clamped = [](const Real& value, const Real& radius) __attribute__((always_inline)) {
+        return upper(lower(value, radius), Real{} - radius);
+    };
+    const auto stretched = [](const Lanes3<Real>& v, const Real& factor)
+                               __attribute__((always_inline)) {
+                                   return Lanes3<Real>{factor * v[0], factor * v[1], factor * v[2]};
+                               };
+    Lanes3<Real> p{}; // own point nearest the other's centre, from the own centre
+    unrolled<3>([&](auto k) __attribute__((always_inline)) {
+        const Real y = clamped(inner(own.axes[k], f.between), own.half_extents[k]);
+        p = sum(p, stretched(own.axes[k], y));
+    });
+    const Lanes3<Real> back = difference(p, f.between);
+    Lanes3<Real> q = f.between; // the other's point nearest to that one
+    unrolled<3>([&](auto k) __attribute__((always_inline)) {
+        const Real z = clamped(inner(f.axes[k], back), f.half_extents[k]);
+        q = sum(q, stretched(f.axes[k], z));
+    });
+    Lanes3<Real> n{};
+    unrolled<3>([&](auto k) __attribute__((always_inline)) {
+        const Real w = inner(own.axes[k], q);
+        n = sum(n, stretched(own.axes[k], w - clamped(w, own.half_extents[k])));
+    });
+    const Real square = inner(n, n);
+    return stretched(
+        n, select(square > Real(0x1p-400), Real(1.0 - 0x1p-48) / root_of(square), Real{}));
+}
+
 // Each lane of the pairs says what its own box's axes prove; the longest of both is the pair's.
 template <typename Real>
 OBB_INLINE Real longest_step(const Own<Real>& own, const LaneMotion& motion,
@@ -233,6 +265,14 @@ OBB_INLINE Real longest_step(const Own<Real>& own, const LaneMotion& motion,
     if (circles.matter) {
         const OwnReach<Real> reach{circles.span, Real{}, Real(kAxisError)};
         longest = upper(longest, step_along(own.spin_axis, reach, own, f, circles));
+    }
+    // Boxes that pass each other at the clearance are mostly apart along no axis of theirs.
+    if (frame.seeks_near) {
+        const Lanes3<Real> n = near_direction(own, f);
+        const Real along = inner(n, own.spin_axis);
+        const OwnReach<Real> reach{radius_along(h, n, own.axes), radius_along(h, n, own.velocity),
+                                   Real(1.0 + 0x1p-48 + motion.skew) - along * along};
+        longest = upper(longest, step_along(n, reach, own, f, circles));
     }
     return upper(longest, across(longest));
 }

@@ -79,7 +79,8 @@ class MovingPair {
                 &b_.spin(),
                 duration_ - time,
                 relative_,
-                between_error_ + clearance_ + absolute};
+                between_error_ + clearance_ + absolute,
+                clearance_ > kWideClearance};
     }
     // The same for boxes, with a margin to spare.
     [[nodiscard]] MovingFrame box_frame(double time, double margin = 0) const {
@@ -109,6 +110,10 @@ class MovingPair {
     }
 
   private:
+    // Scaled. Boxes are looked at along their nearest points where the clearance is wider than
+    // this: one that stands for what legs of a path are off by gains nothing from it.
+    static constexpr double kWideClearance = 0x1p-20;
+
     void set_units(double duration, double clearance);
     void set_motion();
     void turn_to(double time);
