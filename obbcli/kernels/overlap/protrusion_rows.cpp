@@ -1,28 +1,13 @@
 // The rows of a protrusion query: where the bound is attained, what is near there says more.
 #include "overlap/point_triangle.hpp"
 #include "overlap/protrusion_query.hpp"
+#include "overlap/unit_normal.hpp"
 #include "shapes/extremes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace obb {
-
-namespace {
-
-// From the two shorter edges: of a needle the others cancel.
-[[nodiscard]] Vec3 unit_normal(const Triangle& t) {
-    const std::array<Vec3, 3> e{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-    std::size_t longest = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-        longest = dot(e[k], e[k]) > dot(e[longest], e[longest]) ? k : longest;
-    }
-    return unit_or(
-        cross(unit_or(e[(longest + 1) % 3], {0, 0, 0}), unit_or(e[(longest + 2) % 3], {0, 0, 0})),
-        {0, 0, 0});
-}
-
-} // namespace
 
 ProtrusionQuery::Values ProtrusionQuery::values_of(const Row& row) const {
     Values values{};

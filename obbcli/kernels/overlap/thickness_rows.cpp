@@ -1,5 +1,6 @@
 // The rows of a thickness query: where the bound is attained, what is near there says more.
 #include "overlap/thickness_query.hpp"
+#include "overlap/unit_normal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,18 +8,6 @@
 namespace obb {
 
 namespace {
-
-// From the two shorter edges: of a needle the others cancel.
-[[nodiscard]] Vec3 unit_normal(const Triangle& t) {
-    const std::array<Vec3, 3> e{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-    std::size_t longest = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-        longest = dot(e[k], e[k]) > dot(e[longest], e[longest]) ? k : longest;
-    }
-    return unit_or(
-        cross(unit_or(e[(longest + 1) % 3], {0, 0, 0}), unit_or(e[(longest + 2) % 3], {0, 0, 0})),
-        {0, 0, 0});
-}
 
 // How a plane rises across a direction, in which it may stand on end.
 [[nodiscard]] Vec3 slope_of(const Vec3& normal, const Vec3& up) {
