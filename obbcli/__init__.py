@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from obbcli.answers.contact_piece import ContactPiece
     from obbcli.answers.counts import QueryStats
     from obbcli.answers.distance import Distance
+    from obbcli.answers.free_range import FreeRange
     from obbcli.answers.overlap import Overlap
     from obbcli.answers.status import Status
     from obbcli.errors import (
@@ -40,10 +41,12 @@ if TYPE_CHECKING:
     from obbcli.questions.collide import collide
     from obbcli.questions.contacts import contacts
     from obbcli.questions.distance import distance
-    from obbcli.questions.first_contact import Query, first_contact
+    from obbcli.questions.first_contact import first_contact
     from obbcli.questions.intervals.contact_intervals import contact_intervals
+    from obbcli.questions.intervals.free_range import free_range
     from obbcli.questions.notes import notes
     from obbcli.questions.overlap.overlap import overlap
+    from obbcli.questions.query import Query
     from obbcli.questions.triangle_pairs import triangle_pair_blocks, triangle_pairs
     from obbcli.scene import Scene, SceneBody, SceneContact
     from obbcli.study.stability.rows import Stability
@@ -64,6 +67,7 @@ _HOMES = {
     "ContactPiece": "answers.contact_piece",
     "Distance": "answers.distance",
     "FirstContact": "answers.contact",
+    "FreeRange": "answers.free_range",
     "Mesh": "mesh",
     "MeshError": "errors",
     "Motion": "motion.motion",
@@ -73,7 +77,7 @@ _HOMES = {
     "Overlap": "answers.overlap",
     "Part": "motion.assembly",
     "Pose": "motion.pose",
-    "Query": "questions.first_contact",
+    "Query": "questions.query",
     "QueryStats": "answers.counts",
     "Scene": "scene",
     "SceneBody": "scene",
@@ -90,6 +94,7 @@ _HOMES = {
     "contacts": "questions.contacts",
     "distance": "questions.distance",
     "first_contact": "questions.first_contact",
+    "free_range": "questions.intervals.free_range",
     "load_mesh": "mesh",
     "load_parts": "motion.assembly",
     "notes": "questions.notes",
@@ -112,6 +117,7 @@ __all__ = [
     "ContactPiece",
     "Distance",
     "FirstContact",
+    "FreeRange",
     "Mesh",
     "MeshError",
     "Motion",
@@ -139,6 +145,7 @@ __all__ = [
     "contacts",
     "distance",
     "first_contact",
+    "free_range",
     "load_mesh",
     "load_parts",
     "notes",

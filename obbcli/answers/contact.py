@@ -90,9 +90,12 @@ class FirstContact(Contact):
 
     Attributes:
         stats: what the question cost.
+        released: s; where contact was not to count until the bodies have been apart: (lo, hi), when
+            they were first. None where they never were, or nothing of the kind was asked.
     """
 
     stats: QueryStats
+    released: tuple[float, float] | None = None
 
     @classmethod
     def of(cls, contact: Contact, stats: QueryStats) -> FirstContact:

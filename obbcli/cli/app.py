@@ -18,6 +18,7 @@ _GROUPS = {
         "overlap": "overlap",
         "clearance": "clearance",
         "intervals": "intervals",
+        "range": "range",
     },
     "Many bodies, many motions": {"scene": "scene", "sweep": "sweep"},
     "How far answers can be trusted": {"tradeoff": "tradeoff", "stability": "stability"},

@@ -76,7 +76,7 @@ def collide_pair(pair: PairQuestion, *, solid: bool) -> Collision:
     accuracy = pair.accuracy
     if solid or pair.duration > 0 or accuracy.clearance > 0:
         # Bodies at rest answer without this import.
-        from obbcli.questions.first_contact import Query
+        from obbcli.questions.query import Query
 
         query = Query.about(pair, solid=solid, any_contact=True)
         return collision_of(query.advance(accuracy.max_iterations, accuracy.timeout))

@@ -21,10 +21,10 @@ from obbcli.mesh import Mesh
 from obbcli.motion.body import Body, with_pivot
 from obbcli.questions.border import moving_query, whole_limit
 from obbcli.questions.describe import contact_at_start, contact_of
-from obbcli.questions.first_contact import Query
 from obbcli.questions.legs.leg import on_clock
 from obbcli.questions.legs.through_poses import legs_of
 from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.query import Query
 from obbcli.questions.search import Search
 from obbcli.tree.tree import ObbTree
 

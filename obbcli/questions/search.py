@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from obbcli.answers.contact import FirstContact
-    from obbcli.questions.first_contact import Query
     from obbcli.questions.pair_question import Trees
+    from obbcli.questions.query import Query
 
 
 class Search:

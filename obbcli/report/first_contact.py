@@ -28,7 +28,11 @@ _AT_HI = {
 
 
 def first_contact_record(
-    setting: Setting, answer: FirstContact, listing: Listing | None = None
+    setting: Setting,
+    answer: FirstContact,
+    listing: Listing | None = None,
+    *,
+    released_by: float | None = None,
 ) -> Record:
     """Return the record of a question.
 
@@ -36,8 +40,13 @@ def first_contact_record(
         setting: what was asked.
         answer: what came out; its fields become the result, but for the stats.
         listing: the contacts of pairs; None where they were not asked for.
+        released_by: mesh units; further apart than this contact began to count. None: it did at
+            once.
     """
     result = contact_part(answer, setting.sources)
+    if released_by is not None:
+        released = None if answer.released is None else list(answer.released)
+        result |= {"released": released, "released_by": released_by}
     if listing is not None:
         result |= contacts_part(listing, setting.sources)
     return answer_document("first-contact", setting, result, answer.stats)
@@ -47,7 +56,7 @@ def first_contact_tables(record: Record) -> list[Table]:
     """Return the tables of a record: the answer, and the list where it was asked for."""
     result = record["result"]
     rows = [*source_rows(record), ("status", result["status"]), ("answer", _sentence(record))]
-    rows += [*_bracket(record), *contained_rows(result)]
+    rows += [*_released(result), *_bracket(record), *contained_rows(result)]
     if result["point"] is not None:
         rows.append(("point", point(result["point"])))
     if result["normal"] is not None:
@@ -71,9 +80,25 @@ def first_contact_bare(record: Record) -> str:
     return f"{result['status']}{time}\n"
 
 
+def _released(result: Record) -> list[tuple[str, str]]:
+    """Return when contact began to count, where that was asked."""
+    if result.get("released") is None:
+        return []
+    low, high = result["released"]
+    if low == high:
+        return [("released", f"at t = {low!r} s")]
+    return [("released", f"at t = {low!r} s, or up to {high - low:.2g} s later")]
+
+
 def _sentence(record: Record) -> str:
     result = record["result"]
     time = result["time"]
+    if "released" in result and result["status"] == "overlap_at_start":
+        return "in contact at t = 0 and never released"
+    if "released" in result and result["status"] == "separated":
+        return "no contact after they were released"
+    if "released" in result and result["status"] == "unresolved" and result["released"] is None:
+        return f"whether they are released is not known after t = {time!r} s"
     if result["status"] == "separated":
         sampled = as_sampled(result, by_boxes=False) if result["approximate"] else ""
         return f"no contact in the whole duration{sampled}"

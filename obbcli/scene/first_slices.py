@@ -12,8 +12,8 @@ from obbcli import kernels
 from obbcli.answers.counts import Counts
 from obbcli.motion.body import Body
 from obbcli.questions.border import limits_of, placed_of, screw_of
-from obbcli.questions.first_contact import Query
 from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.query import Query
 from obbcli.questions.steady import SteadyQuery
 from obbcli.tree.tree import ObbTree
 

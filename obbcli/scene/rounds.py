@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.answers.counts import Counts
 from obbcli.errors import MotionError
-from obbcli.questions.first_contact import Query
+from obbcli.questions.query import Query
 from obbcli.scene.first_slices import FirstSlices
 from obbcli.scene.results import SceneContact
 

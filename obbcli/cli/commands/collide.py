@@ -175,7 +175,7 @@ def _answer(pair: PairQuestion, *, solid: bool, progress: bool) -> Collision:
 
     if pair.is_at_rest:
         return collide_pair(pair, solid=solid)
-    from obbcli.questions.first_contact import Query
+    from obbcli.questions.query import Query
 
     query = Query.about(pair, solid=solid, any_contact=True)
     return collision_of(run(query, pair.accuracy, progress=progress))

@@ -176,7 +176,7 @@ def _draw_contact(asked: TwoBodyOptions, how: ViewOptions, target: Path, *, soli
     question = asked.question()
     files = asked.read()
     with naming_options(question):
-        from obbcli.questions.first_contact import Query
+        from obbcli.questions.query import Query
 
         pair = question.pair(files)
         query = Query.about(pair, solid=solid)

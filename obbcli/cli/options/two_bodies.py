@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from obbcli.answers.contact import FirstContact
     from obbcli.cli.inputs import Input
     from obbcli.cli.options.option import Decorator
-    from obbcli.questions.first_contact import Query
     from obbcli.questions.pair_question import PairQuestion
+    from obbcli.questions.query import Query
     from obbcli.report.record import Record, Setting
 
 QUESTION = "Question"

@@ -18,8 +18,8 @@ from obbcli.questions.clearance.asked import Asked, refuse_other_accuracy
 from obbcli.questions.clearance.at_rest import RestSearch
 from obbcli.questions.clearance.found import joined, share_of
 from obbcli.questions.clearance.moving import MovingSearch
-from obbcli.questions.first_contact import Query
 from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.query import Query
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy

@@ -15,10 +15,10 @@ from obbcli.answers.status import Status
 from obbcli.errors import UnresolvedError
 from obbcli.questions.border import static_query, stats_of
 from obbcli.questions.containment import Containment
-from obbcli.questions.first_contact import Query
 from obbcli.questions.intervals.look import Look, Span
 from obbcli.questions.legs.leg import length_of, on_clock
 from obbcli.questions.legs.through_poses import legs_of
+from obbcli.questions.query import Query
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -29,21 +29,25 @@ if TYPE_CHECKING:
     from obbcli.tree.tree import ObbTree
 
 
-def legs_of(pair: PairQuestion) -> Iterator[Leg]:
-    """Yield the legs of [0, duration], earliest first; the last may be an instant.
+def legs_of(pair: PairQuestion, start: float = 0.0) -> Iterator[Leg]:
+    """Yield the legs of [start, duration], earliest first; the last may be an instant.
+
+    Args:
+        pair: the question.
+        start: s, at most the duration.
 
     Raises:
         MotionError: positions leave the range of double.
     """
-    breaks = {0.0}
+    breaks = {start}
     for body in pair.bodies:
-        breaks.update(body.motion.breaks(0.0, pair.duration))
+        breaks.update(body.motion.breaks(start, pair.duration))
     starts = sorted(breaks)
     sides = tuple(zip(pair.bodies, pair.trees, strict=True))
-    for start, end in zip(starts, [*starts[1:], pair.duration], strict=True):
-        (a, error_a), (b, error_b) = (_placed(body, tree, start) for body, tree in sides)
-        jumps = sum(jump_at(body, tree, end) for body, tree in sides) if end > start else 0.0
-        yield Leg(start, length_of(start, end), (a, b), error_a + error_b + jumps)
+    for begin, end in zip(starts, [*starts[1:], pair.duration], strict=True):
+        (a, error_a), (b, error_b) = (_placed(body, tree, begin) for body, tree in sides)
+        jumps = sum(jump_at(body, tree, end) for body, tree in sides) if end > begin else 0.0
+        yield Leg(begin, length_of(begin, end), (a, b), error_a + error_b + jumps)
 
 
 def _placed(body: Body, tree: ObbTree, time: float) -> tuple[Body, float]:
@@ -65,6 +69,7 @@ class PathQuery(Relay):
     Args:
         pair: the question.
         any_contact: whether any proof of contact will do, not of the first.
+        start: s; from when on contact counts. No other time is looked at.
     """
 
     _near: Contact | None = None
@@ -72,12 +77,14 @@ class PathQuery(Relay):
     _later_leg: Leg | None = None  # the one after it
     _is_at_end = False  # whether the present question is the instant after the near leg
 
-    def __init__(self, pair: PairQuestion, *, any_contact: bool = False) -> None:
+    def __init__(
+        self, pair: PairQuestion, *, any_contact: bool = False, start: float = 0.0
+    ) -> None:
         # The bracket of an answer joins two: when the bodies come near, and when they touch. Each
         # may take half of the width asked for.
         half = replace(pair.accuracy, time_tolerance=0.5 * pair.time_tolerance)
         halved = pair._replace(accuracy=half)
-        super().__init__(halved, legs_of(halved), any_contact=any_contact)
+        super().__init__(halved, legs_of(halved, start), any_contact=any_contact)
 
     @property
     def lower_bound(self) -> float:

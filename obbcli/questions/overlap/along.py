@@ -19,8 +19,8 @@ from obbcli.errors import MotionError
 from obbcli.motion.body import Body
 from obbcli.motion.motion import Motion
 from obbcli.motion.pose import Pose
-from obbcli.questions.first_contact import Query
 from obbcli.questions.pair_question import PairQuestion
+from obbcli.questions.query import Query
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

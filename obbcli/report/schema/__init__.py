@@ -30,6 +30,7 @@ _DOCUMENTS = {
     "info": ("obbtree info --json", "files"),
     "intervals": ("obbtree intervals --json", "intervals"),
     "overlap": ("obbtree overlap --json", "overlaps"),
+    "range": ("obbtree range --json", "ranges"),
     "scene": ("obbtree scene --json", "answers"),
     "scene-overlaps": ("obbtree scene --overlaps --json", "overlaps"),
     "stability": ("obbtree stability --json", "studies"),

@@ -70,7 +70,14 @@ def first_contact() -> Schema:
             or_null(AMOUNT), "s; where a limit ended the list: all contacts before it are there"
         ),
     }
-    more = listed | PART_NAMES
+    released = {
+        "released": told(
+            or_null(tuple_of(AMOUNT, AMOUNT)),
+            "s; when they were apart first; null: never; with --after-release",
+        ),
+        "released_by": told(AMOUNT, "mesh units; apart by more than this; with --after-release"),
+    }
+    more = listed | released | PART_NAMES
     result = record(CONTACT_FIELDS | more, optional=more)
     return pair_document("first-contact", result, solid=_SOLID)
 

@@ -10,8 +10,9 @@ from obbcli.accuracy import Accuracy
 from obbcli.answers.status import Status
 from obbcli.errors import MotionError
 from obbcli.motion.body import as_body
-from obbcli.questions.first_contact import Query, first_contact
+from obbcli.questions.first_contact import first_contact
 from obbcli.questions.pair_question import duration_of
+from obbcli.questions.query import Query
 from obbcli.study.tradeoff.judge import Judge
 from obbcli.study.tradeoff.settings import Scale, Setting, levels_of, plan, reference_of
 from obbcli.study.tradeoff.taking_turns import fair_part, no_collections
