@@ -49,6 +49,28 @@ class LeastClearance:
 
 
 @dataclass(frozen=True, kw_only=True)
+class GreatestClearance:
+    """The greatest distance of two bodies over an interval of time.
+
+    Attributes:
+        bounds: mesh units; (lo, hi): at `time` the bodies are at least lo apart, and at no time
+            more than hi.
+        time: s; when they are so far apart.
+        point_a: a point of A that is nearest to B then, world coordinates.
+        point_b: the one of B nearest to it.
+        triangle_a: row of A's mesh file that `point_a` lies in.
+        triangle_b: row of B's mesh file that `point_b` lies in.
+    """
+
+    bounds: tuple[float, float]
+    time: float
+    point_a: Vector
+    point_b: Vector
+    triangle_a: int
+    triangle_b: int
+
+
+@dataclass(frozen=True, kw_only=True)
 class AtLeast:
     """Whether two bodies keep a distance.
 
@@ -71,6 +93,8 @@ class Clearance:
 
     Attributes:
         minimum: the least distance, when and where.
+        maximum: the greatest distance, when and where; None where it was not asked for, or a limit
+            ended the search before.
         at_least: whether they keep the distance asked about; None where none was.
         first_contact: when and where they first touch; None where they are not known to.
         complete: whether the search ended before a limit. Where not, the bracket is wide.
@@ -78,6 +102,7 @@ class Clearance:
     """
 
     minimum: LeastClearance
+    maximum: GreatestClearance | None = None
     at_least: AtLeast | None = None
     first_contact: Contact | None = None
     complete: bool = True

@@ -43,6 +43,7 @@ def clearance_part(answer: Clearance, sources: Sequence[Source]) -> Record:
     contact = answer.first_contact
     return {
         "minimum": minimum | part_names(answer.minimum, sources),
+        "maximum": plain(answer.maximum),
         "at_least": plain(answer.at_least),
         "first_contact": None if contact is None else contact_part(contact, sources),
         "complete": answer.complete,
@@ -62,6 +63,9 @@ def clearance_tables(record: Record) -> list[Table]:
         rows += [("point of A", point(least["point_a"])), ("point of B", point(least["point_b"]))]
     if least["triangle_a"] is not None:
         rows.append(("triangles", f"{least['triangle_a']} of A and {least['triangle_b']} of B"))
+    most = result["maximum"]
+    if most is not None:
+        rows.append(("greatest distance", f"{bracket(most['bounds'])}, at t = {most['time']!r} s"))
     return [Table([*rows, *part_rows(least), *cost_rows(record["stats"])])]
 
 

@@ -34,7 +34,7 @@ def test_clearance_document_holds_what_was_asked_and_answered(here, obbtree):
     assert list(result) == [field.name for field in fields(Clearance) if field.name != "stats"]
     assert least["bounds"][0] <= 1 <= least["bounds"][1]
     assert least["when"][0][0] <= least["time"] <= least["when"][-1][1]
-    assert result["at_least"] is result["first_contact"] is None
+    assert result["maximum"] is result["at_least"] is result["first_contact"] is None
     assert result["complete"] is True
 
 
@@ -55,6 +55,7 @@ def test_clearance_table_tells_it_to_people(here, obbtree):
     assert told["least distance"].endswith("proven")
     assert told["at"].startswith("t = ")
     assert "first contact at t = 1.0 s" in obbtree("clearance", *MEETING).out
+    assert "greatest distance  " in obbtree("clearance", *PASSING, "--greatest").out
     assert "violated at t = " in obbtree("clearance", *PASSING, "--at-least", 2).out
 
 
@@ -104,6 +105,7 @@ def test_solid_counts_what_is_inside(here, obbtree):
 @pytest.mark.parametrize(
     ("words", "where"),
     [
+        (("--greatest", "--solid"), "greatest"),
         (("--tolerance", "0"), "tolerance"),
         (("--tolerance", "1"), "tolerance"),
         (("--tolerance", "nan"), "--tolerance"),

@@ -55,6 +55,7 @@ Examples:
     metavar="E",
     help="Width of the bracket, as a share of the distance in mesh units [default: 1e-6].",
 )
+@option(QUESTION, "--greatest", is_flag=True, help="Ask how far apart they come, too.")
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another touches it.")
 @about_two("Exit with 1 where they touch, or come nearer than D; 0 where proven not to.")
 def command(asked: TwoBodyOptions, **flags: Any) -> int:

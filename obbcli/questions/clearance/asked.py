@@ -23,11 +23,13 @@ class Asked(NamedTuple):
         tolerance: the relative width asked of the bracket.
         at_least: mesh units; only whether the bodies keep this distance is asked.
         solid: whether closed surfaces hold what is inside them.
+        greatest: whether the greatest distance is asked for, too.
     """
 
     tolerance: float = CLEARANCE_TOLERANCE
     at_least: float | None = None
     solid: bool = False
+    greatest: bool = False
 
     @classmethod
     def of(
@@ -35,6 +37,7 @@ class Asked(NamedTuple):
         tolerance: float = CLEARANCE_TOLERANCE,
         at_least: float | None = None,
         solid: bool = False,
+        greatest: bool = False,
     ) -> Asked:
         """Return what is asked, as `clearance` takes it.
 
@@ -45,7 +48,10 @@ class Asked(NamedTuple):
         if not 0 < width < 1:
             raise MotionError("tolerance", f"is {tolerance!r}", "use a number between 0 and 1")
         limit = None if at_least is None else _number("at_least", at_least)
-        return cls(width, limit, bool(solid))
+        if greatest and solid:
+            fault = "is that of surfaces, and solid asks about what they hold"
+            raise MotionError("greatest", fault, "leave one of the two out")
+        return cls(width, limit, bool(solid), bool(greatest))
 
 
 def refuse_other_accuracy(accuracy: Accuracy) -> None:

@@ -21,6 +21,7 @@ def clearance(
     tolerance: float = CLEARANCE_TOLERANCE,
     at_least: float | None = None,
     solid: bool = False,
+    greatest: bool = False,
 ) -> Clearance:
     """Return how near two bodies come to each other in the closed interval [0, duration].
 
@@ -39,6 +40,8 @@ def clearance(
         at_least: mesh units; ask only whether the bodies keep this distance, which is cheaper: the
             search ends as soon as that is known.
         solid: whether closed surfaces hold what is inside them: a body inside the other touches it.
+        greatest: ask for the greatest distance in the interval, too, to the same tolerance; not
+            with `solid`.
 
     Raises:
         MotionError: an argument is refused, a field of `accuracy` has no meaning here, or positions
@@ -54,7 +57,6 @@ def clearance(
         'holds'
     """
     limits = Accuracy() if accuracy is None else accuracy
-    query = ClearanceQuery(
-        a, b, duration, limits, tolerance=tolerance, at_least=at_least, solid=solid
-    )
+    asked = {"tolerance": tolerance, "at_least": at_least, "solid": solid, "greatest": greatest}
+    query = ClearanceQuery(a, b, duration, limits, **asked)  # type: ignore[arg-type]
     return query.advance(limits.max_iterations, limits.timeout)

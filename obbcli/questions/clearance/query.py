@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from obbcli import kernels
 from obbcli.accuracy import CLEARANCE_TOLERANCE
-from obbcli.answers.clearance import AtLeast, Clearance, LeastClearance
+from obbcli.answers.clearance import Clearance, LeastClearance
 from obbcli.answers.contact import Contact
 from obbcli.answers.counts import Counts
 from obbcli.answers.status import Status
@@ -17,13 +17,14 @@ from obbcli.questions.budget import Budget
 from obbcli.questions.clearance.asked import Asked, refuse_other_accuracy
 from obbcli.questions.clearance.at_rest import RestSearch
 from obbcli.questions.clearance.found import joined, share_of
+from obbcli.questions.clearance.greatest import GreatestSearch
 from obbcli.questions.clearance.moving import MovingSearch
+from obbcli.questions.clearance.told import greatest_of, verdict_of
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.query import Query
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
-    from obbcli.answers.clearance import VerdictWord
     from obbcli.answers.contact import FirstContact
     from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body, Shape
@@ -48,6 +49,7 @@ class ClearanceQuery:
         tolerance: relative width asked of the bracket.
         at_least: mesh units; ask only whether the bodies keep this distance.
         solid: whether closed surfaces hold what is inside them: a body inside the other touches.
+        greatest: whether the greatest distance is asked for, too.
 
     Raises:
         MotionError: an argument is refused, a field of `accuracy` has no meaning here, or positions
@@ -74,8 +76,9 @@ class ClearanceQuery:
         tolerance: float = CLEARANCE_TOLERANCE,
         at_least: float | None = None,
         solid: bool = False,
+        greatest: bool = False,
     ) -> None:
-        asked = Asked.of(tolerance, at_least, solid)
+        asked = Asked.of(tolerance, at_least, solid, greatest)
         if accuracy is not None:
             refuse_other_accuracy(accuracy)
         self._set_up(PairQuestion.of(a, b, duration, accuracy), asked)
@@ -99,6 +102,7 @@ class ClearanceQuery:
         self._at_start: Query | None = None
         self._contact: Query | None = None
         self._touching: FirstContact | None = None
+        self._greatest: GreatestSearch | None = None
         self._spent = 0
         self._is_finished = False
         if asked.solid:
@@ -161,7 +165,7 @@ class ClearanceQuery:
         for query in (self._at_start, self._contact):
             if query is not None:
                 counts += query.counts
-        return counts
+        return counts if self._greatest is None else counts + self._greatest.counts
 
     def advance(self, max_iterations: int | None = None, seconds: float | None = None) -> Clearance:
         """Go on for so many queue pops or seconds, and return what is known then.
@@ -195,6 +199,16 @@ class ClearanceQuery:
 
     def _step(self, pops: int) -> bool:
         """Take at most so many pops of what is to be asked next; return whether all is answered."""
+        if self._greatest is not None:
+            return self._greatest.step()
+        if not self._find_least(pops):
+            return False
+        if self._asked.greatest:
+            self._greatest = GreatestSearch(self._pair, self._asked.tolerance)
+        return self._greatest is None or self._greatest.is_over
+
+    def _find_least(self, pops: int) -> bool:
+        """Go on with the least distance; return whether it is found."""
         if self._contact is not None:
             self._touching = self._contact.advance(pops)
             return self._contact.is_finished
@@ -228,7 +242,8 @@ class ClearanceQuery:
         contact = self._first_contact()
         return Clearance(
             minimum=self._pair.with_parts(least, (least.triangle_a, least.triangle_b)),
-            at_least=self._verdict(least),
+            maximum=greatest_of(self._greatest),
+            at_least=verdict_of(self._asked.at_least, least),
             first_contact=contact,
             complete=self._is_finished,
             stats=self._stats(),
@@ -274,21 +289,4 @@ class ClearanceQuery:
             when=tuple(spans),
             when_share=share_of(spans, duration),
             **place._asdict(),
-        )
-
-    def _verdict(self, least: LeastClearance) -> AtLeast | None:
-        """Return whether the bodies keep the distance asked about."""
-        limit = self._asked.at_least
-        if limit is None:
-            return None
-        low, high = least.bounds
-        verdict: VerdictWord = "open"
-        if low >= limit:
-            verdict = "holds"
-        elif high is not None and high < limit:
-            verdict = "violated"
-        return AtLeast(
-            distance=limit,
-            verdict=verdict,
-            time=least.time if verdict == "violated" else None,
         )

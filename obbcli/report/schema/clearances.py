@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from obbcli.answers.clearance import AtLeast, Clearance, LeastClearance
+from obbcli.answers.clearance import AtLeast, Clearance, GreatestClearance, LeastClearance
 from obbcli.report.schema.shared import PART_NAMES, STATS_FIELDS, pair_document
 from obbcli.report.schema.typed import schemas_of
 from obbcli.report.schema.words import (
@@ -29,6 +29,7 @@ def clearance() -> Schema:
         Clearance,
         {
             "minimum": _least(),
+            "maximum": or_null(record(schemas_of(GreatestClearance))),
             "at_least": or_null(record(schemas_of(AtLeast))),
             "first_contact": or_null(ref("contact")),
             "complete": FLAG,
