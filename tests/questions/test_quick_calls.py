@@ -58,7 +58,8 @@ def test_function_looks_as_it_is_written(function, name, home, said):
     assert function.__module__ == f"obbcli.questions.{home}"
     assert function.__doc__.startswith("Return whe")
     arguments = ["a", "b", "duration", "accuracy", "solid"]
-    assert list(inspect.signature(function).parameters) == arguments
+    more = ["after_release", "released_by"] if name == "first_contact" else []
+    assert list(inspect.signature(function).parameters) == [*arguments, *more]
     assert inspect.unwrap(function) is function.__wrapped__
     assert inspect.isroutine(function)
     assert callable(function)
