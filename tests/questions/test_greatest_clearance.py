@@ -9,7 +9,17 @@ from movers.meshes import cube
 from movers.random_pairs import KINDS, random_pair
 from oracles.gaps import gap_at
 
-from obbcli import Accuracy, Body, Mesh, Motion, MotionError, Pose, clearance, distance
+from obbcli import (
+    Accuracy,
+    Body,
+    ClearanceQuery,
+    Mesh,
+    Motion,
+    MotionError,
+    Pose,
+    clearance,
+    distance,
+)
 
 CUBE = Mesh(*cube())
 SMALL = Mesh(*cube(0.25))
@@ -68,3 +78,15 @@ def test_greatest_is_left_out_unasked_and_after_a_limit():
 def test_greatest_of_solids_is_refused():
     with pytest.raises(MotionError, match="greatest"):
         clearance(CUBE, SMALL, solid=True, greatest=True)
+
+
+def test_legs_of_a_long_path_are_asked_within_limits():
+    places = [Pose(translation=(3 + 0.001 * k, 0, 0)) for k in range(200)]
+    body = Body(SMALL, motion=Motion.through(np.arange(200.0), places))
+    least = ClearanceQuery(CUBE, body)
+    least.advance()
+    limits = Accuracy(max_iterations=least.iterations + 5)
+    answer = clearance(CUBE, body, None, limits, greatest=True)
+
+    assert not answer.complete
+    assert answer.maximum is None

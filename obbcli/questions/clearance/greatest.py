@@ -66,33 +66,49 @@ class GreatestSearch:
 
     def __init__(self, pair: PairQuestion, tolerance: float) -> None:
         self._pair, self._tolerance = pair, tolerance
-        still = [Leg(0.0, pair.duration, pair.bodies, 0.0)]
-        self._legs = still if pair.is_steady else list(legs_of(pair))
-        self._ways = [_Way(pair, leg) for leg in self._legs]
-        self._floor = 64 * max(way.error for way in self._ways)
+        self._legs: list[Leg] = []
+        self._ways: list[_Way] = []
+        still = iter([Leg(0.0, pair.duration, pair.bodies, 0.0)])
+        self._later = still if pair.is_steady else legs_of(pair)
+        self._next: Leg | None = next(self._later)
+        self._floor = 0.0
         self._heap: list[tuple[float, int, _Open]] = []
         self._order = itertools.count()
-        self.low, self.place = 0.0, None
+        self.low = 0.0
+        self.place: Place | None = None
         self.counts = Counts()
-        for k, leg in enumerate(self._legs):
-            ends = (self._look(k, 0.0), self._look(k, leg.duration))
-            self._push(k, 0.0, leg.duration, ends)
+        self._begin_leg()
 
-    low: float
-    place: Place | None
+    def _begin_leg(self) -> None:
+        """Look at both ends of the next leg: one a step, as a path may have a million."""
+        leg = self._next
+        assert leg is not None
+        self._next = next(self._later, None)
+        self._legs.append(leg)
+        self._ways.append(_Way(self._pair, leg))
+        self._floor = max(self._floor, 64 * self._ways[-1].error)
+        k = len(self._legs) - 1
+        self._push(k, 0.0, leg.duration, (self._look(k, 0.0), self._look(k, leg.duration)))
 
     @property
     def high(self) -> float:
-        """The bodies are never further apart: proven. Mesh units."""
+        """The bodies are never further apart: proven; infinite while unknown. Mesh units."""
+        if self._next is not None:
+            return math.inf
         return max(self.low, -self._heap[0][0] if self._heap else 0.0)
 
     @property
     def is_over(self) -> bool:
         """Whether the bracket is as narrow as asked, or as rounding allows."""
+        if self._next is not None:
+            return False
         return self.high - self.low <= max(self._tolerance * self.high, self._floor)
 
     def step(self) -> bool:
         """Halve the interval in which the distance may be greatest; return whether it is over."""
+        if self._next is not None:
+            self._begin_leg()
+            return self.is_over
         if self.is_over:
             return True
         interval = heapq.heappop(self._heap)[2]

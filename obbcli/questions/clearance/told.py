@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from obbcli.answers.clearance import AtLeast, GreatestClearance
@@ -27,7 +28,7 @@ def verdict_of(limit: float | None, least: LeastClearance) -> AtLeast | None:
 
 def greatest_of(search: GreatestSearch | None) -> GreatestClearance | None:
     """Return the greatest distance as far as it is known; None where it was not looked for."""
-    if search is None:
+    if search is None or search.high == math.inf:
         return None
     assert search.place is not None
     return GreatestClearance(bounds=(search.low, search.high), **search.place._asdict())
