@@ -269,3 +269,15 @@ def test_time_tolerance_of_nothing_ends() -> None:
     pieces = list(contact_intervals(rod, cube, 3.0, Accuracy(time_tolerance=0)))
 
     assert [one.kind for one in pieces if one.kind != "undecided"] == ["free", "contact", "free"]
+
+
+@pytest.mark.parametrize("power", [-500, 0, 500])
+def test_bodies_of_any_size_have_the_same_pieces(power: int) -> None:
+    size = 2.0**power
+    cube = Mesh(CUBE.mesh.vertices * size, FACES)
+    coming = Body(cube, Pose(translation=[2 * size, 0, 0]), Motion([-size, 0, 0], [0.1, 0.2, 0.3]))
+    same = Body(CUBE, Pose(translation=[2, 0, 0]), Motion([-1, 0, 0], [0.1, 0.2, 0.3]))
+
+    pieces = brackets(list(contact_intervals(coming, cube, 3.0)))
+
+    assert pieces == brackets(list(contact_intervals(same, CUBE, 3.0)))

@@ -56,8 +56,11 @@ class Look:
             pivot = np.array(pivot_of(body, tree)) if motion.is_turning else np.zeros(3)
             frames.append(Frame(motion.linear_velocity, motion.angular_velocity, pivot))
             sizes += _size_in_motion(body, tree.bounds, frames[-1], leg.duration)
-        self._frames = frames[0], frames[1]
-        self._error = _ROUNDING * sizes + leg.slack
+        # Lengths of about 1 keep products of some of them within doubles.
+        self._scale = scale = math.ldexp(1.0, min(max(-math.frexp(sizes)[1], -1000), 1000))
+        x, y = (Frame(scale * f.velocity, f.spin, scale * f.pivot) for f in frames)
+        self._frames = x, y
+        self._error = scale * (_ROUNDING * sizes + leg.slack)
         turns = sum(float(np.linalg.norm(frame.spin)) for frame in frames)
         self._longest = leg.duration if turns == 0 else min(leg.duration, _LARGEST_TURN / turns)
 
@@ -110,7 +113,7 @@ class Look:
 
     def _pierced(self, time: float, pairs: NDArray[np.int64]) -> list[Span]:
         a, b = (
-            np.array([body.pose.apply(tree.triangle(int(row))) for row in column])
+            self._scale * np.array([body.pose.apply(tree.triangle(int(row))) for row in column])
             for body, tree, column in zip(
                 self._leg.bodies, self._pair.trees, pairs.T.tolist(), strict=True
             )
@@ -135,11 +138,12 @@ class Look:
             return []
         x, y = self._frames
         points = [
-            _at_start(np.array([point]), frame, time)
+            _at_start(self._scale * np.array([point]), frame, time)
             for point, frame in ((found.point_a, x), (found.point_b, y))
         ]
         motion = RelativeMotion(x, y, time)
-        functions = near_points(motion, (points[0], points[1]), self._within, self._error)
+        within = self._scale * self._within
+        functions = near_points(motion, (points[0], points[1]), within, self._error)
         return self._spans_of(functions, time)
 
 
