@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli import kernels
+from obbcli.answers import collision  # noqa: F401  # the kernels make answers of its class
 from obbcli.questions.border import quick_question
 from obbcli.questions.describe import answer_told
 from obbcli.questions.pair_question import PairQuestion

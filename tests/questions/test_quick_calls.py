@@ -9,6 +9,7 @@ import inspect
 import pickle
 import pydoc
 import signal
+import subprocess
 import sys
 import weakref
 
@@ -294,3 +295,20 @@ def test_seconds_of_a_question_that_goes_on_are_measured():
 
     assert stats.pops > 0
     assert stats.seconds["query"] > 0
+
+
+def test_a_first_contact_is_the_first_question_of_a_process() -> None:
+    code = """
+import numpy as np
+from obbcli import Body, Mesh, Motion, ObbTree, Pose, first_contact
+corners = [(i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1)]
+faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4)]
+faces += [(2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+tree = ObbTree.build(Mesh(np.array(corners, float), faces), lazy=False)
+for x in (0.5, 1.0, 1.01, 3.0):
+    print(first_contact(tree, Body(tree, Pose((0.3, -0.2, 0.5), (x, 0.1, -0.2)))).status)
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.split() == ["overlap_at_start"] * 3 + ["separated"]
