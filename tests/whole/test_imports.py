@@ -101,6 +101,7 @@ NEEDED = {
     "obbcli.kernels",
     "obbcli.kernels._core",
     "obbcli.mesh",
+    "obbcli.mesh.checked_arrays",
     "obbcli.mesh.formats",
     "obbcli.mesh.formats.sniff",
     "obbcli.mesh.formats.stl",
