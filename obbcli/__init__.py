@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from obbcli.motion.body import Body
     from obbcli.motion.motion import Motion
     from obbcli.motion.pose import Pose
-    from obbcli.questions.clearance.clearance import clearance
+    from obbcli.questions.clearance.clearance import clearance, clearance_curve
     from obbcli.questions.clearance.query import ClearanceQuery
     from obbcli.questions.collide import collide
     from obbcli.questions.contacts import contacts
@@ -89,6 +89,7 @@ _HOMES = {
     "TreeFileError": "errors",
     "UnresolvedError": "errors",
     "clearance": "questions.clearance.clearance",
+    "clearance_curve": "questions.clearance.clearance",
     "collide": "questions.collide",
     "contact_intervals": "questions.intervals.contact_intervals",
     "contacts": "questions.contacts",
@@ -140,6 +141,7 @@ __all__ = [
     "UnresolvedError",
     "__version__",
     "clearance",
+    "clearance_curve",
     "collide",
     "contact_intervals",
     "contacts",

@@ -71,6 +71,24 @@ class GreatestClearance:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CurvePiece:
+    """The least distance of two bodies in one interval of a curve.
+
+    Attributes:
+        start: s; where the interval begins.
+        end: s; where it ends; both times are part of it.
+        bounds: mesh units; (lo, hi): in all of the interval the bodies are never nearer than lo,
+            and at `time` no further apart than hi. hi is None where a limit came first.
+        time: s; None where a limit came first.
+    """
+
+    start: float
+    end: float
+    bounds: tuple[float, float | None]
+    time: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class AtLeast:
     """Whether two bodies keep a distance.
 
@@ -95,6 +113,7 @@ class Clearance:
         minimum: the least distance, when and where.
         maximum: the greatest distance, when and where; None where it was not asked for, or a limit
             ended the search before.
+        curve: the least distance in each of equal intervals, in order; None where not asked for.
         at_least: whether they keep the distance asked about; None where none was.
         first_contact: when and where they first touch; None where they are not known to.
         complete: whether the search ended before a limit. Where not, the bracket is wide.
@@ -103,6 +122,7 @@ class Clearance:
 
     minimum: LeastClearance
     maximum: GreatestClearance | None = None
+    curve: tuple[CurvePiece, ...] | None = None
     at_least: AtLeast | None = None
     first_contact: Contact | None = None
     complete: bool = True

@@ -13,12 +13,13 @@ from obbcli.report.table import Table, length, point
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from obbcli.answers.clearance import Clearance
+    from obbcli.answers.clearance import Clearance, CurvePiece
     from obbcli.questions.clearance.asked import Asked
     from obbcli.report.record import Record, Setting, Source
 
 # Stretches of time that a table lists.
 _MOST_STRETCHES = 3
+_CURVE_COLUMNS = ("from (s)", "to (s)", "least distance", "at (s)")
 
 
 def clearance_record(setting: Setting, asked: Asked, answer: Clearance) -> Record:
@@ -44,10 +45,20 @@ def clearance_part(answer: Clearance, sources: Sequence[Source]) -> Record:
     return {
         "minimum": minimum | part_names(answer.minimum, sources),
         "maximum": plain(answer.maximum),
+        "curve": _curve(answer.curve),
         "at_least": plain(answer.at_least),
         "first_contact": None if contact is None else contact_part(contact, sources),
         "complete": answer.complete,
     }
+
+
+def _curve(pieces: tuple[CurvePiece, ...] | None) -> list[Record] | None:
+    if pieces is None:
+        return None
+    return [
+        {"from": one.start, "to": one.end, "bounds": list(one.bounds), "time": one.time}
+        for one in pieces
+    ]
 
 
 def clearance_tables(record: Record) -> list[Table]:
@@ -66,7 +77,22 @@ def clearance_tables(record: Record) -> list[Table]:
     most = result["maximum"]
     if most is not None:
         rows.append(("greatest distance", f"{bracket(most['bounds'])}, at t = {most['time']!r} s"))
-    return [Table([*rows, *part_rows(least), *cost_rows(record["stats"])])]
+    table = Table([*rows, *part_rows(least), *cost_rows(record["stats"])])
+    return [table] if result["curve"] is None else [table, _curve_table(result["curve"])]
+
+
+def _curve_table(pieces: list[Record]) -> Table:
+    """Return the table of a curve, a row an interval."""
+    rows = [
+        (
+            f"{one['from']:.6g}",
+            f"{one['to']:.6g}",
+            bracket(one["bounds"]),
+            "" if one["time"] is None else f"{one['time']:.6g}",
+        )
+        for one in pieces
+    ]
+    return Table(rows, _CURVE_COLUMNS, "least distance, interval by interval")
 
 
 def clearance_bare(record: Record) -> str:

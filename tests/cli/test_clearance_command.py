@@ -34,7 +34,13 @@ def test_clearance_document_holds_what_was_asked_and_answered(here, obbtree):
     assert list(result) == [field.name for field in fields(Clearance) if field.name != "stats"]
     assert least["bounds"][0] <= 1 <= least["bounds"][1]
     assert least["when"][0][0] <= least["time"] <= least["when"][-1][1]
-    assert result["maximum"] is result["at_least"] is result["first_contact"] is None
+    assert (
+        result["curve"]
+        is result["maximum"]
+        is result["at_least"]
+        is result["first_contact"]
+        is None
+    )
     assert result["complete"] is True
 
 
@@ -93,6 +99,15 @@ def test_exit_code_is_not_asked_unasked(here, obbtree):
     assert obbtree("clearance", *TURNING, "--max-iterations", 1).code == 4
 
 
+def test_curve_has_a_row_an_interval(here, obbtree):
+    curve = obbtree("clearance", *PASSING, "--curve", 3, "--json").json["result"]["curve"]
+
+    assert [(row["from"], row["to"]) for row in curve][::2] == [(0, 2 / 3), (4 / 3, 2)]
+    assert curve[1]["bounds"] == pytest.approx([1, 1], rel=1e-5)
+    table = obbtree("clearance", *PASSING, "--curve", 3).out
+    assert "least distance, interval by interval" in table
+
+
 def test_solid_counts_what_is_inside(here, obbtree):
     inside = ("cube.stl", "cube.stl", "--scale-b", 0.25, "--translate-b", 0.3, 0.3, 0.3)
 
@@ -106,6 +121,8 @@ def test_solid_counts_what_is_inside(here, obbtree):
     ("words", "where"),
     [
         (("--greatest", "--solid"), "greatest"),
+        (("--curve", "3", "--solid"), "intervals"),
+        (("--curve", "0"), "--curve"),
         (("--tolerance", "0"), "tolerance"),
         (("--tolerance", "1"), "tolerance"),
         (("--tolerance", "nan"), "--tolerance"),

@@ -9,7 +9,7 @@ import click
 from obbcli.cli.boundary import CancelledError, ExitCode, UsageError, usage_errors
 from obbcli.cli.options.option import Command, option
 from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
-from obbcli.cli.options.words import Finite
+from obbcli.cli.options.words import Finite, Whole
 from obbcli.cli.output import emit
 from obbcli.cli.progress import narrowing
 
@@ -56,6 +56,14 @@ Examples:
     help="Width of the bracket, as a share of the distance in mesh units [default: 1e-6].",
 )
 @option(QUESTION, "--greatest", is_flag=True, help="Ask how far apart they come, too.")
+@option(
+    QUESTION,
+    "--curve",
+    "intervals",
+    type=Whole(1),
+    metavar="N",
+    help="Ask how near they come in each of N equal intervals, too [default: do not].",
+)
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another touches it.")
 @about_two("Exit with 1 where they touch, or come nearer than D; 0 where proven not to.")
 def command(asked: TwoBodyOptions, **flags: Any) -> int:

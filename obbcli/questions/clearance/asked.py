@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.accuracy import CLEARANCE_TOLERANCE
 from obbcli.errors import MotionError
+from obbcli.questions.border import whole_limit
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
 
 CONCERNS = frozenset({"max_iterations", "timeout"})
 """The fields of `Accuracy` that say something about a least clearance."""
+MOST_INTERVALS = 1_000_000
+"""Intervals that a curve may have: each is a search, and a row of the answer."""
 
 
 class Asked(NamedTuple):
@@ -24,12 +27,14 @@ class Asked(NamedTuple):
         at_least: mesh units; only whether the bodies keep this distance is asked.
         solid: whether closed surfaces hold what is inside them.
         greatest: whether the greatest distance is asked for, too.
+        intervals: in how many equal intervals the least distance is asked for, too; 0: none.
     """
 
     tolerance: float = CLEARANCE_TOLERANCE
     at_least: float | None = None
     solid: bool = False
     greatest: bool = False
+    intervals: int = 0
 
     @classmethod
     def of(
@@ -38,6 +43,7 @@ class Asked(NamedTuple):
         at_least: float | None = None,
         solid: bool = False,
         greatest: bool = False,
+        intervals: int | None = None,
     ) -> Asked:
         """Return what is asked, as `clearance` takes it.
 
@@ -51,7 +57,14 @@ class Asked(NamedTuple):
         if greatest and solid:
             fault = "is that of surfaces, and solid asks about what they hold"
             raise MotionError("greatest", fault, "leave one of the two out")
-        return cls(width, limit, bool(solid), bool(greatest))
+        count = 0 if intervals is None else whole_limit(intervals, "intervals")
+        if count > MOST_INTERVALS:
+            fault = f"is {count:,}, more than {MOST_INTERVALS:,}"
+            raise MotionError("intervals", fault, "ask for fewer intervals")
+        if count and solid:
+            fault = "are those of surfaces, and solid asks about what they hold"
+            raise MotionError("intervals", fault, "leave one of the two out")
+        return cls(width, limit, bool(solid), bool(greatest), count)
 
 
 def refuse_other_accuracy(accuracy: Accuracy) -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from obbcli.accuracy import CLEARANCE_TOLERANCE, Accuracy
+from obbcli.questions.clearance.asked import Asked, refuse_other_accuracy
+from obbcli.questions.clearance.curve import CurveSearch
 from obbcli.questions.clearance.query import ClearanceQuery
+from obbcli.questions.pair_question import PairQuestion
 
 if TYPE_CHECKING:
-    from obbcli.answers.clearance import Clearance
+    from obbcli.answers.clearance import Clearance, CurvePiece
     from obbcli.motion.body import Body, Shape
 
 
@@ -60,3 +63,47 @@ def clearance(
     asked = {"tolerance": tolerance, "at_least": at_least, "solid": solid, "greatest": greatest}
     query = ClearanceQuery(a, b, duration, limits, **asked)  # type: ignore[arg-type]
     return query.advance(limits.max_iterations, limits.timeout)
+
+
+def clearance_curve(
+    a: Body | Shape,
+    b: Body | Shape,
+    duration: float | None = None,
+    accuracy: Accuracy | None = None,
+    *,
+    intervals: int,
+    tolerance: float = CLEARANCE_TOLERANCE,
+) -> tuple[CurvePiece, ...]:
+    """Return the least distance in each of equal intervals that cover [0, duration].
+
+    Each is a bracket as that of `clearance`: in all of the interval the surfaces are never nearer
+    than its lower end. Where a limit ends the search the pieces that are left have bounds that say
+    nothing, (0, None).
+
+    Args:
+        a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
+        b: the other shape, of the same kinds.
+        duration: s; None: 1 where a body moves, else 0.
+        accuracy: as `clearance` takes it.
+        intervals: how many, from 1 to a million; one where the duration is 0.
+        tolerance: relative width asked of each bracket.
+
+    Raises:
+        ObbError: as `clearance`.
+        OSError: a file cannot be read.
+
+    Example:
+        >>> from obbcli import Body, Motion
+        >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, 10, 0]))
+        >>> pieces = clearance_curve(finger, "sample_meshes/workpiece.obj", intervals=2)
+        >>> [round(piece.bounds[1], 3) for piece in pieces]
+        [5.0, 10.0]
+    """
+    asked = Asked.of(tolerance, intervals=intervals)
+    limits = Accuracy() if accuracy is None else accuracy
+    refuse_other_accuracy(limits)
+    pair = PairQuestion.of(a, b, duration, limits)
+    found = ClearanceQuery.about(pair, asked).advance(limits.max_iterations, limits.timeout)
+    if found.curve is not None:
+        return found.curve
+    return CurveSearch(pair, tolerance, asked.intervals).all_pieces()

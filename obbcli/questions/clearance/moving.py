@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from obbcli.questions.clearance.asked import Asked
     from obbcli.questions.clearance.found import Span
-    from obbcli.questions.pair_question import PairQuestion
+    from obbcli.questions.pair_question import PairQuestion, Trees
 
 
 class _Done(NamedTuple):
@@ -122,24 +122,10 @@ class MovingSearch:
             return
         seconds, point_a, point_b, triangle_a, triangle_b = witness
         time = on_clock(self._leg.start, seconds, self._pair.duration, up=True)
-        high = self._query.bounds[1] + self._late_by(seconds, time)
+        high = self._query.bounds[1] + late_by(self._leg, self._pair.trees, seconds, time)
         if high < self.high:
             self.high = high
             self.place = Place(time, point_a, point_b, triangle_a, triangle_b)
-
-    def _late_by(self, seconds: float, time: float) -> float:
-        """Bound by how much the bodies move while a leg's time is rounded to the whole clock's."""
-        late = abs(math.fsum((self._leg.start, seconds, -time)))
-        if late == 0:
-            return 0.0
-        speed = 0.0
-        for body, tree in zip(self._leg.bodies, self._pair.trees, strict=True):
-            low, high = tree.bounds
-            linear, angular = body.motion.linear_velocity, body.motion.angular_velocity
-            pivot = 0.0 if body.motion.pivot is None else norm(body.motion.pivot)
-            reach = norm(abs(low)) + norm(abs(high)) + norm(body.pose.translation) + pivot
-            speed += norm(linear) + norm(angular) * reach
-        return 2 * late * speed
 
     def _keep(self) -> None:
         """Remember when the present leg's bodies are near, and forget legs that are not."""
@@ -161,3 +147,18 @@ class MovingSearch:
         if self._next is not None:
             spans.append((self._next.start, self._pair.duration))
         return joined(spans)
+
+
+def late_by(leg: Leg, trees: Trees, seconds: float, time: float) -> float:
+    """Bound by how much bodies move between a leg's time and one of the whole clock, mesh units."""
+    late = abs(math.fsum((leg.start, seconds, -time)))
+    if late == 0:
+        return 0.0
+    speed = 0.0
+    for body, tree in zip(leg.bodies, trees, strict=True):
+        low, high = tree.bounds
+        linear, angular = body.motion.linear_velocity, body.motion.angular_velocity
+        pivot = 0.0 if body.motion.pivot is None else norm(body.motion.pivot)
+        reach = norm(abs(low)) + norm(abs(high)) + norm(body.pose.translation) + pivot
+        speed += norm(linear) + norm(angular) * reach
+    return 2 * late * speed

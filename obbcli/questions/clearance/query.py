@@ -16,17 +16,17 @@ from obbcli.questions.border import damaged, out_of_range, stats_of
 from obbcli.questions.budget import Budget
 from obbcli.questions.clearance.asked import Asked, refuse_other_accuracy
 from obbcli.questions.clearance.at_rest import RestSearch
+from obbcli.questions.clearance.curve import CurveSearch
 from obbcli.questions.clearance.found import joined, share_of
 from obbcli.questions.clearance.greatest import GreatestSearch
 from obbcli.questions.clearance.moving import MovingSearch
-from obbcli.questions.clearance.told import greatest_of, verdict_of
+from obbcli.questions.clearance.told import curve_of, greatest_of, verdict_of
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.questions.query import Query
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
     from obbcli.answers.contact import FirstContact
-    from obbcli.answers.counts import QueryStats
     from obbcli.motion.body import Body, Shape
     from obbcli.questions.clearance.found import LeastSearch
 
@@ -36,8 +36,7 @@ _CONTACT = (Status.CONTACT, Status.OVERLAP_AT_START)
 class ClearanceQuery:
     """The least distance of two moving bodies, as a question that can be advanced.
 
-    At any moment `bounds` are proven. Solids are asked first whether one holds a part of the other
-    at t = 0; bodies that are found to touch are asked for their first contact.
+    At any moment `bounds` are proven. Bodies that touch are asked for their first contact.
 
     Args:
         a: a `Body`, an `ObbTree`, a `Mesh`, a `Part`, or the path of a mesh or tree file.
@@ -98,12 +97,13 @@ class ClearanceQuery:
         start = time.perf_counter()
         self._pair, self._asked = pair, asked
         self._search: LeastSearch | None = None
-        # About t = 0 of solids, and about the first contact of bodies that touch.
         self._at_start: Query | None = None
         self._contact: Query | None = None
         self._touching: FirstContact | None = None
         self._greatest: GreatestSearch | None = None
+        self._curve: CurveSearch | None = None
         self._spent = 0
+        self._is_least_found = False
         self._is_finished = False
         if asked.solid:
             instant = pair._replace(duration=0.0)
@@ -165,7 +165,10 @@ class ClearanceQuery:
         for query in (self._at_start, self._contact):
             if query is not None:
                 counts += query.counts
-        return counts if self._greatest is None else counts + self._greatest.counts
+        for search in (self._greatest, self._curve):
+            if search is not None:
+                counts += search.counts
+        return counts
 
     def advance(self, max_iterations: int | None = None, seconds: float | None = None) -> Clearance:
         """Go on for so many queue pops or seconds, and return what is known then.
@@ -199,13 +202,20 @@ class ClearanceQuery:
 
     def _step(self, pops: int) -> bool:
         """Take at most so many pops of what is to be asked next; return whether all is answered."""
-        if self._greatest is not None:
-            return self._greatest.step()
-        if not self._find_least(pops):
-            return False
-        if self._asked.greatest:
-            self._greatest = GreatestSearch(self._pair, self._asked.tolerance)
-        return self._greatest is None or self._greatest.is_over
+        if not self._is_least_found:
+            self._is_least_found = self._find_least(pops)
+            return self._is_least_found and not (self._asked.greatest or self._asked.intervals)
+        asked = self._asked
+        if asked.greatest:
+            if self._greatest is None:
+                self._greatest = GreatestSearch(self._pair, asked.tolerance)
+            if not self._greatest.step():
+                return False
+        if not asked.intervals:
+            return True
+        if self._curve is None:
+            self._curve = CurveSearch(self._pair, asked.tolerance, asked.intervals)
+        return self._curve.step(pops)
 
     def _find_least(self, pops: int) -> bool:
         """Go on with the least distance; return whether it is found."""
@@ -243,14 +253,12 @@ class ClearanceQuery:
         return Clearance(
             minimum=self._pair.with_parts(least, (least.triangle_a, least.triangle_b)),
             maximum=greatest_of(self._greatest),
+            curve=curve_of(self._curve),
             at_least=verdict_of(self._asked.at_least, least),
             first_contact=contact,
             complete=self._is_finished,
-            stats=self._stats(),
+            stats=stats_of(self._pair.trees, self.counts, dict(self._seconds)),
         )
-
-    def _stats(self) -> QueryStats:
-        return stats_of(self._pair.trees, self.counts, dict(self._seconds))
 
     def _first_contact(self) -> Contact | None:
         """Return the first contact where the bodies touch and it is known."""

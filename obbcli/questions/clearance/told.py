@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from obbcli.answers.clearance import AtLeast, GreatestClearance
 
 if TYPE_CHECKING:
-    from obbcli.answers.clearance import LeastClearance, VerdictWord
+    from obbcli.answers.clearance import CurvePiece, LeastClearance, VerdictWord
+    from obbcli.questions.clearance.curve import CurveSearch
     from obbcli.questions.clearance.greatest import GreatestSearch
 
 
@@ -32,3 +33,8 @@ def greatest_of(search: GreatestSearch | None) -> GreatestClearance | None:
         return None
     assert search.place is not None
     return GreatestClearance(bounds=(search.low, search.high), **search.place._asdict())
+
+
+def curve_of(search: CurveSearch | None) -> tuple[CurvePiece, ...] | None:
+    """Return the curve as far as it is known; None where it was not begun."""
+    return None if search is None else search.all_pieces()

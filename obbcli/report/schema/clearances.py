@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from obbcli.answers.clearance import AtLeast, Clearance, GreatestClearance, LeastClearance
+from obbcli.answers.clearance import (
+    AtLeast,
+    Clearance,
+    CurvePiece,
+    GreatestClearance,
+    LeastClearance,
+)
 from obbcli.report.schema.shared import PART_NAMES, STATS_FIELDS, pair_document
 from obbcli.report.schema.typed import schemas_of
 from obbcli.report.schema.words import (
@@ -30,6 +36,7 @@ def clearance() -> Schema:
         {
             "minimum": _least(),
             "maximum": or_null(record(schemas_of(GreatestClearance))),
+            "curve": or_null(list_of(_piece())),
             "at_least": or_null(record(schemas_of(AtLeast))),
             "first_contact": or_null(ref("contact")),
             "complete": FLAG,
@@ -47,3 +54,9 @@ def _least() -> Schema:
     for name in PART_NAMES:
         del fields[name]
     return record(fields | PART_NAMES, optional=PART_NAMES)
+
+
+def _piece() -> Schema:
+    fields = schemas_of(CurvePiece, bounds=tuple_of(AMOUNT, or_null(AMOUNT)))
+    ends = {"from": fields.pop("start"), "to": fields.pop("end")}
+    return record(ends | fields)
