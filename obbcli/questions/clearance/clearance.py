@@ -97,7 +97,7 @@ def clearance_curve(
         >>> finger = Body("sample_meshes/finger_left.off", motion=Motion([0, 10, 0]))
         >>> pieces = clearance_curve(finger, "sample_meshes/workpiece.obj", intervals=2)
         >>> [round(piece.bounds[1], 3) for piece in pieces]
-        [5.0, 10.0]
+        [2.0, 2.0]
     """
     asked = Asked.of(tolerance, intervals=intervals)
     limits = Accuracy() if accuracy is None else accuracy
