@@ -128,8 +128,7 @@ class MovingSearch:
             self.place = Place(time, point_a, point_b, triangle_a, triangle_b)
 
     def _keep(self) -> None:
-        """Remember when the present leg's bodies are near, and forget legs that are not."""
-        self._done = [done for done in self._done if done.low <= self.high]
+        """Remember when the present leg's bodies are near; `when` leaves out those that are not."""
         if self._query.bounds[0] <= self.high:
             self._done.append(_Done(self._query.bounds[0], self._when_on_leg()))
 
