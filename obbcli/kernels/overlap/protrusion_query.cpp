@@ -86,7 +86,8 @@ std::optional<bool> ProtrusionQuery::is_deeper() const {
     if (best_.depth > *wanted_) {
         return true;
     }
-    return is_answered() ? std::optional<bool>(false) : std::nullopt;
+    // With a floor below rounding what was given up may exceed the limit: then nothing is proven.
+    return is_answered() && given_up_ <= *limit_ ? std::optional<bool>(false) : std::nullopt;
 }
 
 void ProtrusionQuery::visit(const Cell& cell) {

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.accuracy import CLEARANCE_TOLERANCE
 from obbcli.errors import MotionError
 from obbcli.questions.border import whole_limit
+from obbcli.questions.checked import number_of, refuse_unused
 
 if TYPE_CHECKING:
     from obbcli.accuracy import Accuracy
@@ -50,10 +49,10 @@ class Asked(NamedTuple):
         Raises:
             MotionError: an argument is no number that it may be; `where` is its name.
         """
-        width = _number("tolerance", tolerance)
+        width = number_of("tolerance", tolerance)
         if not 0 < width < 1:
             raise MotionError("tolerance", f"is {tolerance!r}", "use a number between 0 and 1")
-        limit = None if at_least is None else _number("at_least", at_least)
+        limit = None if at_least is None else number_of("at_least", at_least)
         if greatest and solid:
             fault = "is that of surfaces, and solid asks about what they hold"
             raise MotionError("greatest", fault, "leave one of the two out")
@@ -73,10 +72,7 @@ def refuse_other_accuracy(accuracy: Accuracy) -> None:
     Raises:
         MotionError: one of them has another value than its default.
     """
-    for field in fields(accuracy):
-        value = getattr(accuracy, field.name)
-        if field.name not in CONCERNS and value != field.default:
-            raise MotionError(field.name, *why_refused(field.name))
+    refuse_unused(accuracy, CONCERNS, why_refused)
 
 
 def why_refused(name: str) -> tuple[str, str]:
@@ -84,14 +80,3 @@ def why_refused(name: str) -> tuple[str, str]:
     if name == "clearance":
         return "would mean two things here", "use at_least, or first_contact with it"
     return "says nothing about a least clearance", "leave it out"
-
-
-def _number(name: str, value: object) -> float:
-    """Return a finite float of at least 0."""
-    try:
-        number = float(value)  # type: ignore[arg-type]  # whatever is no number raises here
-    except (TypeError, ValueError, OverflowError) as fault:
-        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0") from fault
-    if isinstance(value, (str, bool)) or not 0 <= number < math.inf:
-        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0")
-    return number

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import fields
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from obbcli.accuracy import DEPTH_TOLERANCE
 from obbcli.errors import MotionError
+from obbcli.questions.checked import number_of, refuse_unused
 from obbcli.questions.overlap.along import unit_direction
 from obbcli.questions.overlap.band import checked_touch
 
@@ -60,11 +59,11 @@ class Asked(NamedTuple):
         Raises:
             MotionError: an argument is no number that it may be; `where` is its name.
         """
-        width = _number("tolerance", tolerance)
+        width = number_of("tolerance", tolerance)
         if width == 0:
             fault = "is 0, which no bracket reaches"
             raise MotionError("tolerance", fault, "use a number above 0, such as 0.01")
-        limit = None if deeper_than is None else _number("deeper_than", deeper_than)
+        limit = None if deeper_than is None else number_of("deeper_than", deeper_than)
         band = None if touch is None else checked_touch(touch)
         direction = None if along is None else unit_direction(along)
         values: Literal["all", "none"] = "all" if limit is None else "none"
@@ -78,10 +77,7 @@ def refuse_other_accuracy(accuracy: Accuracy) -> None:
     Raises:
         MotionError: one of them has another value than its default.
     """
-    for field in fields(accuracy):
-        value = getattr(accuracy, field.name)
-        if field.name not in CONCERNS and value != field.default:
-            raise MotionError(field.name, "says nothing about an overlap", "leave it out")
+    refuse_unused(accuracy, CONCERNS, lambda _: ("says nothing about an overlap", "leave it out"))
 
 
 def _resolution(regions: float | bool | None) -> float | None:
@@ -90,19 +86,8 @@ def _resolution(regions: float | bool | None) -> float | None:
         return None
     if regions is True:
         return 0.0
-    resolution = _number("regions", regions)
+    resolution = number_of("regions", regions)
     if resolution == 0:
         remedy = "use a number above 0, or True for one that suits the bodies"
         raise MotionError("regions", "is a resolution of 0", remedy)
     return resolution
-
-
-def _number(name: str, value: object) -> float:
-    """Return a finite float of at least 0."""
-    try:
-        number = float(value)  # type: ignore[arg-type]  # whatever is no number raises here
-    except (TypeError, ValueError, OverflowError) as fault:
-        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0") from fault
-    if isinstance(value, (str, bool)) or not 0 <= number < math.inf:
-        raise MotionError(name, f"is {value!r}", "use a finite number of at least 0")
-    return number
