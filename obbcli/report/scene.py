@@ -169,6 +169,11 @@ def scene_tables(record: Record) -> list[Table]:
 
 def explained_tables(record: Record) -> list[Table]:
     """Return the tables of a record, and one that says what of each body was used."""
+    return [*scene_tables(record), used_table(record)]
+
+
+def used_table(record: Record) -> Table:
+    """Return the table that says what of each body was used."""
     rows = [
         (
             body["name"],
@@ -184,7 +189,7 @@ def explained_tables(record: Record) -> list[Table]:
     if "meshes_decoded" in stats:
         decoded = f"{count(stats['meshes_decoded'])} of {count(stats['meshes_possible'])}"
         title = f"what of each body was used; meshes decoded: {decoded}, which copies share"
-    return [*scene_tables(record), Table(rows, columns, title, name_count=2)]
+    return Table(rows, columns, title, name_count=2)
 
 
 def scene_bare(record: Record) -> str:

@@ -14,6 +14,7 @@ from obbcli.tree.tree import ObbTree
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from obbcli.accuracy import Accuracy
     from obbcli.answers.counts import Counts
     from obbcli.motion.body import Body
     from obbcli.scene.bodies import SceneParts
@@ -64,8 +65,8 @@ class ScenePairs:
         self._shapes = shapes
         self._placed: dict[int, Body] = {}
         self._seconds = {"load": 0.0, "bounds": 0.0, "query": 0.0}
-        ignored = Ignored(scene.bodies, scene.ignore)
-        wanted = None if pairs is None else asked_pairs(pairs, scene.bodies, ignored)
+        self._ignored = ignored = Ignored(scene.bodies, scene.ignore)
+        self._wanted = wanted = None if pairs is None else asked_pairs(pairs, scene.bodies, ignored)
         places = list(range(len(scene.bodies)))
         if wanted is not None:
             places = sorted({place for pair in wanted for place in pair})
@@ -74,9 +75,7 @@ class ScenePairs:
         with self.timed("load"):
             self.shapes = loaded = [shapes.load(body.body.shape) for body in bodies]
         check_units({body.name: shape.unit for body, shape in zip(bodies, loaded, strict=True)})
-        with self.timed("bounds"):
-            found = find_candidates(bodies, loaded, places, ignored, self.duration, scene.accuracy)
-        self.candidates = found if wanted is None else _only(found, wanted)
+        self.candidates: Candidates = self.find(scene.accuracy)
         if solid:
             with self.timed("load"):
                 self._require_watertight()
@@ -89,6 +88,15 @@ class ScenePairs:
             yield
         finally:
             self._seconds[stage] += time.perf_counter() - start
+
+    def find(self, accuracy: Accuracy) -> Candidates:
+        """Find the pairs that may meet, or come as near as `accuracy` asks; they are kept, too."""
+        with self.timed("bounds"):
+            found = find_candidates(
+                self.bodies, self.shapes, self._places, self._ignored, self.duration, accuracy
+            )
+        self.candidates = found if self._wanted is None else _only(found, self._wanted)
+        return self.candidates
 
     def _require_watertight(self) -> None:
         """Refuse bodies that do not close, of pairs one of which may hold the other."""

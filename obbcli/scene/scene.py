@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from obbcli.accuracy import DEPTH_TOLERANCE, Accuracy
+from obbcli.accuracy import CLEARANCE_TOLERANCE, DEPTH_TOLERANCE, Accuracy
 from obbcli.errors import SceneError
 from obbcli.files import file_of
 from obbcli.mesh import known_suffixes
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from obbcli.scene.all_contacts import AllContacts
     from obbcli.scene.bodies import Bodies, Ignore, SceneBody
+    from obbcli.scene.clearances import Clearances
     from obbcli.scene.overlaps import Overlaps
 
 
@@ -215,6 +216,48 @@ class Scene:
 
         asked = Asked.of(tolerance, touch=touch)._replace(values="deep")
         return Overlaps(self._parts, self._shapes, pairs, asked)
+
+    def clearances(
+        self,
+        within: float | None = None,
+        at_least: float | None = None,
+        pairs: Iterable[tuple[str, str]] | None = None,
+        solid: bool | None = None,
+        *,
+        tolerance: float = CLEARANCE_TOLERANCE,
+    ) -> Clearances:
+        """Return how near the bodies come to each other in [0, duration], the nearest pair first.
+
+        Each is what `clearance` answers of the two, as a proven bracket; pairs are in the order of
+        its lower end, and searched no further than that needs: who takes the first pair alone has
+        the scene's least distance, and trees of bodies further apart are not looked at.
+
+        Args:
+            within: mesh units; pairs that are proven further apart are counted in `stats`, and left
+                out. None: all pairs come.
+            at_least: mesh units; ask only whether each two keep this distance: the search for a
+                pair ends as soon as that is known. Pairs whose bounds prove it are left out.
+            pairs: as of `first_contacts`.
+            solid: likewise.
+            tolerance: as of `clearance`.
+
+        Returns:
+            an iterator of `SceneClearance` that also has `stats`, and in `low` what is proven of
+            all pairs still to come.
+
+        Raises:
+            MotionError: an argument is refused, or the scene's accuracy says more than
+                `max_iterations` and `timeout`, as of `clearance`.
+            SceneError, MeshError, TreeFileError, OSError: as `first_contacts`.
+        """
+        from obbcli.questions.checked import number_of
+        from obbcli.questions.clearance.asked import Asked, refuse_other_accuracy
+        from obbcli.scene.clearances import Clearances
+
+        asked = Asked.of(tolerance, at_least, self.solid if solid is None else solid)
+        reach = None if within is None else number_of("within", within)
+        refuse_other_accuracy(self.accuracy)
+        return Clearances(self._parts, self._shapes, pairs, asked, reach)
 
     def __repr__(self) -> str:
         return f"Scene({len(self.bodies)} bodies, {self.duration!r} s)"

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli.accuracy import DEPTH_TOLERANCE
+from obbcli.accuracy import CLEARANCE_TOLERANCE, DEPTH_TOLERANCE
 from obbcli.cli.boundary import ExitCode, UsageError
 from obbcli.cli.inputs import keep_inputs
 from obbcli.cli.options.accuracy import AccuracyOptions, accuracy_options
@@ -17,6 +17,7 @@ from obbcli.cli.options.words import Finite, PathName, Whole
 from obbcli.cli.output import emit, tell_interrupted
 from obbcli.cli.progress import proving
 from obbcli.cli.scene_files import decoded, mesh_sources, read_scene
+from obbcli.cli.scene_wanted import Wanted, refuse_contradictions
 from obbcli.errors import SceneError
 
 if TYPE_CHECKING:
@@ -29,20 +30,6 @@ if TYPE_CHECKING:
     from obbcli.scene.results import SceneContact
 
 
-class _Wanted(NamedTuple):
-    """Which contacts are asked for."""
-
-    pairs: tuple[str, ...]
-    first: bool
-    all_contacts: bool
-    limit: int | None
-    solid: bool
-    threads: int | None
-    overlaps: bool
-    tolerance: float | None
-    touch: tuple[float, float] | None
-
-
 @click.command(
     "scene",
     cls=Command,
@@ -53,6 +40,7 @@ Examples:
   obbtree scene cell.toml --first --json
   obbtree scene robot.glb                   which of its parts touch?
   obbtree scene robot.glb --overlaps        which overlap, and how deep?
+  obbtree scene cell.toml --least-clearance --within 5
   obbtree scene cell.toml --pairs gripper,part --pairs gripper,table --all-contacts
   obbtree scene cell.toml --exit-code --quiet && echo "nothing touches"
 """,
@@ -72,7 +60,7 @@ Examples:
     "--limit",
     type=Whole(1),
     metavar="N",
-    help="List the first N contacts [default: all].",
+    help="List the first N contacts, or pairs [default: all].",
 )
 @option(QUESTION, "--solid", is_flag=True, help="A body inside another is contact too.")
 @option(
@@ -93,8 +81,8 @@ Examples:
     "--tolerance",
     type=Finite(0.0),
     metavar="E",
-    help="With --overlaps: relative width of brackets, in mesh units no less than 1e-9 sizes "
-    f"[default: {DEPTH_TOLERANCE:g}].",
+    help="With --overlaps, --least-clearance: relative width of brackets, in mesh units no "
+    f"less than rounding [default: {DEPTH_TOLERANCE:g}, {CLEARANCE_TOLERANCE:g}].",
 )
 @option(
     QUESTION,
@@ -105,13 +93,35 @@ Examples:
     help="With --overlaps: what still counts as touching, in mesh units "
     "[default: the files' own rounding].",
 )
+@option(
+    QUESTION,
+    "--least-clearance",
+    is_flag=True,
+    help="Ask how near bodies come to each other as they move, the nearest pair first.",
+)
+@option(
+    QUESTION,
+    "--within",
+    type=Finite(0.0),
+    metavar="R",
+    help="With --least-clearance: leave out pairs proven further apart than R, in mesh units "
+    "[default: all pairs].",
+)
+@option(
+    QUESTION,
+    "--at-least",
+    type=Finite(0.0),
+    metavar="D",
+    help="With --least-clearance: ask only whether each two never come nearer than D, in mesh "
+    "units [default: ask how near].",
+)
 @option(QUESTION, "--explain", is_flag=True, help="Say what of each body was used.")
 @option(
     QUESTION,
     "--exit-code",
     is_flag=True,
-    help="Exit with 1 where bodies touch (with --overlaps: overlap), 0 where proven apart, 4 where "
-    "only sampled so.",
+    help="Exit with 1 where bodies touch (with --overlaps: overlap; --at-least: come nearer), 0 "
+    "where proven apart, 4 where only sampled so.",
 )
 @option(
     "Motion",
@@ -131,12 +141,16 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     standard input. It may be a mesh file too, all parts of which are asked about at rest. What is
     given here overrides what it says. Ctrl-C prints what is known by then.
     """
-    wanted = _Wanted(*(flags[name] for name in _Wanted._fields))
-    _refuse_contradictions(wanted)
+    wanted = Wanted(*(flags[name] for name in Wanted._fields))
+    refuse_contradictions(wanted)
     if wanted.overlaps:
         from obbcli.cli.scene_overlaps import refuse_of_overlaps
 
         refuse_of_overlaps(accuracy, flags["duration"])
+    if wanted.least_clearance:
+        from obbcli.cli.scene_clearances import refuse_of_clearances
+
+        refuse_of_clearances(accuracy)
     scene, source, stamps = read_scene(
         file, accuracy, flags["duration"], checked_sag(flags["sag"]), verify=not flags["no_verify"]
     )
@@ -149,6 +163,12 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
         return answer_overlaps(
             overlaps, scene, source, stamps, common, exit_code=flags["exit_code"]
         )
+    if wanted.least_clearance:
+        from obbcli.cli.scene_clearances import Setting, answer_clearances, clearances_of
+
+        clearances = clearances_of(scene, _pairs(scene, wanted), wanted)
+        setting = Setting(scene, source, stamps, common, explains=flags["explain"])
+        return answer_clearances(clearances, setting, wanted.limit, exit_code=flags["exit_code"])
     found = _ask(scene, wanted)
     answer = _run(found, wanted, progress=common.shows_progress)
     # Hashes cost time, and only a document shows them.
@@ -157,37 +177,7 @@ def command(file: str, common: CommonOptions, accuracy: AccuracyOptions, **flags
     return _exit_code(record["result"], asked=flags["exit_code"])
 
 
-def _refuse_contradictions(wanted: _Wanted) -> None:
-    """Refuse flags of which one would be ignored."""
-    if wanted.first:
-        for name in ("all_contacts", "limit"):
-            if getattr(wanted, name):
-                fault = "lists contacts, and --first asks for one"
-                raise UsageError(f"--{name.replace('_', '-')}", fault, "leave out one of the two")
-    if wanted.threads is not None and (wanted.first or wanted.all_contacts):
-        other = "--first" if wanted.first else "--all-contacts"
-        fault = f"one question is asked at a time with {other}"
-        raise UsageError("--threads", fault, "leave out one of the two")
-    _refuse_beside_overlaps(wanted)
-    if wanted.solid and wanted.all_contacts:
-        fault = "lists triangles that meet, and a body inside another has none"
-        raise UsageError("--all-contacts", fault, "leave out it or --solid")
-
-
-def _refuse_beside_overlaps(wanted: _Wanted) -> None:
-    """Refuse flags about contacts beside --overlaps, and those about depths without it."""
-    if not wanted.overlaps:
-        for name in ("tolerance", "touch"):
-            if getattr(wanted, name) is not None:
-                raise UsageError(f"--{name}", "is about depths", "add --overlaps")
-        return
-    for name in ("first", "all_contacts", "limit", "solid", "threads"):
-        if getattr(wanted, name):
-            fault = "says nothing about overlaps at t = 0"
-            raise UsageError(f"--{name.replace('_', '-')}", fault, "leave it out")
-
-
-def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
+def _refuse_of_scene(wanted: Wanted, scene: Scene) -> None:
     """Refuse what does not go together with what the scene's file says."""
     if wanted.all_contacts and scene.solid:
         fault = "lists triangles that meet, and the scene asks about solids"
@@ -197,13 +187,13 @@ def _refuse_of_scene(wanted: _Wanted, scene: Scene) -> None:
         raise UsageError("--all-contacts", fault, "ask for --method certified")
 
 
-def _pairs(scene: Scene, wanted: _Wanted) -> list[tuple[str, str]] | None:
+def _pairs(scene: Scene, wanted: Wanted) -> list[tuple[str, str]] | None:
     """Return the pairs that are asked about, by name; None: all."""
     names = {body.name for body in scene.bodies}
     return [_pair(text, names) for text in wanted.pairs] or None
 
 
-def _ask(scene: Scene, wanted: _Wanted) -> ContactStream:
+def _ask(scene: Scene, wanted: Wanted) -> ContactStream:
     """Return the question, not yet advanced."""
     pairs = _pairs(scene, wanted)
     try:
@@ -226,7 +216,7 @@ def _pair(text: str, names: set[str]) -> tuple[str, str]:
     return known[0]
 
 
-def _run(found: ContactStream, wanted: _Wanted, *, progress: bool) -> Answer:
+def _run(found: ContactStream, wanted: Wanted, *, progress: bool) -> Answer:
     """Return the answer; after Ctrl-C what is known by then."""
     from obbcli.answers.status import Status
     from obbcli.report.scene import Answer

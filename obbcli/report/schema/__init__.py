@@ -32,6 +32,7 @@ _DOCUMENTS = {
     "overlap": ("obbtree overlap --json", "overlaps"),
     "range": ("obbtree range --json", "ranges"),
     "scene": ("obbtree scene --json", "answers"),
+    "scene-clearances": ("obbtree scene --least-clearance --json", "clearances"),
     "scene-overlaps": ("obbtree scene --overlaps --json", "overlaps"),
     "stability": ("obbtree stability --json", "studies"),
     "sweep": ("the first line of the results of obbtree sweep", "files"),

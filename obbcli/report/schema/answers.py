@@ -109,7 +109,7 @@ def scene() -> Schema:
         "scene",
         inputs,
         duration=told(AMOUNT, "s"),
-        bodies=list_of({"oneOf": [_body(RIGID_FIELDS), _body(PATH_FIELDS)]}),
+        bodies=moving_bodies(),
         ignore=list_of(IGNORE),
         accuracy=ref("accuracy"),
         solid=told(FLAG, "whether a body inside another counts as contact; no key where not"),
@@ -134,6 +134,11 @@ BODY_FIELDS: dict[str, Schema] = {
     "static": told(FLAG, "whether pairs of static bodies are left out"),
     "group": or_null(TEXT),
 }
+
+
+def moving_bodies() -> Schema:
+    """Return the schema of a scene's bodies, where they are and how they move."""
+    return list_of({"oneOf": [_body(RIGID_FIELDS), _body(PATH_FIELDS)]})
 
 
 def _body(movement: dict[str, Schema]) -> Schema:
