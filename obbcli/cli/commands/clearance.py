@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from obbcli.cli.boundary import CancelledError, ExitCode, UsageError, usage_errors
+from obbcli.cli.boundary import CancelledError, ExitCode, usage_errors
 from obbcli.cli.options.option import Command, option
 from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
+from obbcli.cli.options.unused import hide_unused, refuse_unused
 from obbcli.cli.options.words import Finite, Whole
 from obbcli.cli.output import emit
 from obbcli.cli.progress import narrowing
@@ -76,7 +77,8 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """
     from obbcli.report.clearance import clearance_bare, clearance_tables
 
-    _refuse_what_says_nothing(asked)
+    remedy = "use --at-least D, or obbtree first-contact --clearance D"
+    refuse_unused(asked.accuracy.given(), _CONCERNS, "a least clearance", clearance=remedy)
     question = asked.question()
     wanted = _wanted(flags)
     files = asked.read()
@@ -84,17 +86,6 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
         record = _ask(asked, question, files, wanted)
     emit(record, clearance_tables, asked.common, bare=clearance_bare)
     return _exit_code(record["result"], asked=asked.exit_code)
-
-
-def _refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
-    """Refuse options that other questions know: to ignore them would make the answer a lie."""
-    for name in asked.accuracy.given():
-        if name not in _CONCERNS:
-            fault, remedy = "says nothing about a least clearance", "leave it out"
-            if name == "clearance":
-                fault = "would mean two things here"
-                remedy = "use --at-least D, or obbtree first-contact --clearance D"
-            raise UsageError("--" + name.replace("_", "-"), fault, remedy)
 
 
 def _wanted(flags: dict[str, Any]) -> Asked:
@@ -167,12 +158,4 @@ def _exit_code(result: Record, *, asked: bool) -> int:
     return ExitCode.CONTACT if asked and is_near else ExitCode.ANSWERED
 
 
-def _hide_what_says_nothing() -> None:
-    """Keep options that are only known to be refused by name out of the help."""
-    for param in command.params:
-        if getattr(param, "group", "") == "Accuracy" and param.name not in _CONCERNS:
-            assert isinstance(param, click.Option)
-            param.hidden = True
-
-
-_hide_what_says_nothing()
+hide_unused(command, _CONCERNS)

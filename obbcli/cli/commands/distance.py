@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from obbcli.accuracy import ASPECTS
-from obbcli.cli.boundary import ExitCode, UsageError
+from obbcli.cli.boundary import ExitCode
 from obbcli.cli.options.option import Command
 from obbcli.cli.options.two_bodies import (
     about_two,
@@ -15,6 +15,7 @@ from obbcli.cli.options.two_bodies import (
     refuse_what_moves,
     with_load_time,
 )
+from obbcli.cli.options.unused import hide_motion, hide_unused, refuse_unused
 from obbcli.cli.output import emit
 
 if TYPE_CHECKING:
@@ -23,6 +24,12 @@ if TYPE_CHECKING:
     from obbcli.cli.options.placement import MotionOptions, QuestionOptions
     from obbcli.cli.options.two_bodies import TwoBodyOptions
     from obbcli.report.record import Record
+
+
+# The fields of `Accuracy` that say something of bodies at rest, and what stands for two of them.
+_CONCERNS = frozenset(name for name, aspect in ASPECTS.items() if aspect.concerns == "all") | {
+    "max_depth"
+}
 
 
 @click.command(
@@ -61,13 +68,7 @@ def command(asked: TwoBodyOptions) -> int:
 def _refuse_what_says_nothing(motion: MotionOptions, accuracy: AccuracyOptions) -> None:
     """Refuse options that other questions know: to ignore them would make the answer a lie."""
     refuse_what_moves(motion, "distance")
-    for name in accuracy.given():
-        if ASPECTS[name].concerns != "all":
-            raise UsageError(_option(name), "says nothing about a distance", "leave it out")
-
-
-def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
+    refuse_unused(accuracy.given(), _CONCERNS, "a distance")
 
 
 def _ask(asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, Input]) -> Record:
@@ -82,14 +83,5 @@ def _ask(asked: TwoBodyOptions, question: QuestionOptions, files: tuple[Input, I
     return with_load_time(record, files)
 
 
-def _hide_what_says_nothing() -> None:
-    """Keep options that are only known to be refused by name out of the help."""
-    for param in command.params:
-        group = getattr(param, "group", "")
-        aspect = ASPECTS.get(str(param.name))
-        if group == "Motion" or (aspect is not None and aspect.concerns != "all"):
-            assert isinstance(param, click.Option)
-            param.hidden = True
-
-
-_hide_what_says_nothing()
+hide_unused(command, _CONCERNS)
+hide_motion(command)

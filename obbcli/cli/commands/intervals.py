@@ -10,7 +10,7 @@ import click
 from obbcli.cli.boundary import CancelledError, ExitCode
 from obbcli.cli.options.option import Command, option
 from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
-from obbcli.cli.options.whole_motion import hide_what_says_nothing, refuse_what_says_nothing
+from obbcli.cli.options.unused import WHOLE_MOTION, hide_unused, refuse_unused
 from obbcli.cli.options.words import Finite, Whole
 from obbcli.cli.output import emit
 from obbcli.cli.progress import proving
@@ -56,7 +56,8 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """
     from obbcli.report.intervals import intervals_bare, intervals_tables
 
-    refuse_what_says_nothing(asked, "use --within D")
+    about = "proven pieces of a motion"
+    refuse_unused(asked.accuracy.given(), WHOLE_MOTION, about, clearance="use --within D")
     question = asked.question()
     files = asked.read()
     with naming_options(question):
@@ -121,4 +122,4 @@ def _exit_code(result: Record, *, asked: bool) -> int:
     return ExitCode.CONTACT if asked and touches else ExitCode.ANSWERED
 
 
-hide_what_says_nothing(command)
+hide_unused(command, WHOLE_MOTION)

@@ -15,6 +15,7 @@ from obbcli.cli.options.two_bodies import (
     refuse_what_moves,
     with_load_time,
 )
+from obbcli.cli.options.unused import hide_motion, hide_unused, refuse_unused
 from obbcli.cli.options.words import Finite, PathName
 from obbcli.cli.output import emit
 from obbcli.cli.shared_mesh import check_mesh_file, require_solids, write_shared_mesh
@@ -114,13 +115,7 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
 def refuse_what_says_nothing(asked: TwoBodyOptions) -> None:
     """Refuse options that other questions know: to ignore them would make the answer a lie."""
     refuse_what_moves(asked.motion, "overlap")
-    for name in asked.accuracy.given():
-        if name not in _CONCERNS:
-            raise UsageError(_option(name), "says nothing about an overlap", "leave it out")
-
-
-def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
+    refuse_unused(asked.accuracy.given(), _CONCERNS, "an overlap")
 
 
 def _wanted(flags: dict[str, Any]) -> Asked:
@@ -180,19 +175,14 @@ def overlap_exit_code(result: Record, *, asked: bool, limit: float | None = None
     return ExitCode.CONTACT if asked and is_deep else ExitCode.ANSWERED
 
 
-def _hide_what_says_nothing() -> None:
-    """Keep options that are only known to be refused by name out of the help.
-
-    The clearance is asked about otherwise than in other questions.
-    """
+def _tell_of_clearance() -> None:
+    """Say in the help what a clearance means here: it is asked about otherwise elsewhere."""
     for param in command.params:
         if param.name == "clearance":
             assert isinstance(param, click.Option)
             param.help = "Bodies no further apart are near, in mesh units [default: 0]."
-        group = getattr(param, "group", "")
-        if group == "Motion" or (group == "Accuracy" and param.name not in _CONCERNS):
-            assert isinstance(param, click.Option)
-            param.hidden = True
 
 
-_hide_what_says_nothing()
+_tell_of_clearance()
+hide_unused(command, _CONCERNS)
+hide_motion(command)

@@ -9,7 +9,7 @@ import click
 from obbcli.cli.boundary import ExitCode
 from obbcli.cli.options.option import Command, option
 from obbcli.cli.options.two_bodies import QUESTION, about_two, naming_options, with_load_time
-from obbcli.cli.options.whole_motion import hide_what_says_nothing, refuse_what_says_nothing
+from obbcli.cli.options.unused import WHOLE_MOTION, hide_unused, refuse_unused
 from obbcli.cli.output import emit
 
 if TYPE_CHECKING:
@@ -40,7 +40,13 @@ def command(asked: TwoBodyOptions, **flags: Any) -> int:
     """
     from obbcli.report.free_range import range_bare, range_tables
 
-    refuse_what_says_nothing(asked, "move the bodies apart, or see obbtree clearance")
+    about = "proven pieces of a motion"
+    refuse_unused(
+        asked.accuracy.given(),
+        WHOLE_MOTION,
+        about,
+        clearance="move the bodies apart, or see obbtree clearance",
+    )
     question = asked.question()
     files = asked.read()
     with naming_options(question):
@@ -68,4 +74,4 @@ def _exit_code(result: Record, *, asked: bool) -> int:
     return ExitCode.CONTACT if asked and result["free"] is None else ExitCode.ANSWERED
 
 
-hide_what_says_nothing(command)
+hide_unused(command, WHOLE_MOTION)
