@@ -44,7 +44,7 @@ def distance(a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None = None)
 
     Example:
         >>> distance("sample_meshes/housing.stl", "sample_meshes/board.vtk").bounds
-        (0.049999999999971644, 0.049999999999999996)
+        (0.049999999999972254, 0.049999999999999996)
     """
     return measure(PairQuestion.of(a, b, 0.0, accuracy))[0]
 
