@@ -76,7 +76,18 @@ QUESTIONS = {
         ("link_a", "link_b"),
     ),
     "distance": Question(("distance", "{link_a}", "{link_b}"), ("link_a", "link_b")),
+    "overlap": Question(
+        ("overlap", "{gear}", "{pinion}", "--translate", "0.5", "0", "0", "--regions"),
+        ("gear", "pinion"),
+    ),
+    "clearance": Question(("clearance", "{gear}", "{pinion}", *SPIN), ("gear", "pinion")),
+    "intervals": Question(("intervals", "{link_a}", "{link_b}", *PULL), ("link_a", "link_b")),
+    "range": Question(("range", "{gear}", "{pinion}", *SPIN), ("gear", "pinion")),
     "scene": Question(("scene", "{scene}"), (), None, ("verify",)),
+    "scene --overlaps": Question(("scene", "{scene}", "--overlaps"), (), None, ("verify",)),
+    "scene --least-clearance": Question(
+        ("scene", "{scene}", "--least-clearance", "--within", "20"), (), None, ("verify",)
+    ),
     "scene --all-contacts": Question(
         ("scene", "{scene}", "--all-contacts", "--limit", "20"), (), None, ("verify",)
     ),
