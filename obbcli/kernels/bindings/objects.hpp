@@ -27,7 +27,7 @@ struct PlacedObject {
     PyObject* shape;  // of bodies, as the next two
     PyObject* pose;
     PyObject* motion;
-    Placed here;    // no tree where the shape is none yet
+    Placed here; // no tree where the shape is none yet
     bool rests;
     bool is_steady; // its velocities are constant
 };
