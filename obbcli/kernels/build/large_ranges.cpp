@@ -113,8 +113,9 @@ std::uint32_t LargeRanges::split(const NodeRef& ref, unsigned threads) {
     }
     entries_.erase(ref.slot);
     Node& node = slots_->nodes[ref.slot];
-    node.right = refs[1].slot;
-    __atomic_store_n(&node.split, refs[1].begin, __ATOMIC_RELAXED); // is_leaf() may be reading it
+    // fetch_children() and is_leaf() may be reading them.
+    __atomic_store_n(&node.right, refs[1].slot, __ATOMIC_RELAXED);
+    __atomic_store_n(&node.split, refs[1].begin, __ATOMIC_RELAXED);
     return static_cast<std::uint32_t>(count);
 }
 

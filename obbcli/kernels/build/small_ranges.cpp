@@ -221,8 +221,8 @@ void SmallRanges::build_loaded() {
 // One on each side, whichever.
 void SmallRanges::split_two(const Block& block) {
     Node& node = slots_->nodes[block.ref.slot];
-    node.right = block.ref.slot + 1;
-    node.split = block.ref.begin + 1;
+    __atomic_store_n(&node.right, block.ref.slot + 1, __ATOMIC_RELAXED); // as split() says
+    __atomic_store_n(&node.split, block.ref.begin + 1, __ATOMIC_RELAXED);
     settle(from_, block);
 }
 
@@ -235,8 +235,9 @@ std::array<SmallRanges::Block, 2> SmallRanges::split(const Block& block) {
     const std::array<Block, 2> children{{{refs[0], filled_}, {refs[1], second}}};
     filled_ = second + whole_registers(refs[1].triangle_count());
     move(block, children);
-    node.right = refs[1].slot;
-    __atomic_store_n(&node.split, split, __ATOMIC_RELAXED); // is_leaf() may be reading it
+    // fetch_children() and is_leaf() may be reading them.
+    __atomic_store_n(&node.right, refs[1].slot, __ATOMIC_RELAXED);
+    __atomic_store_n(&node.split, split, __ATOMIC_RELAXED);
     return children;
 }
 

@@ -16,13 +16,15 @@ namespace obb {
 inline constexpr std::array<unsigned, 4> kLanesOfA{0, 0b0101, 0b1010, 0b1111};
 inline constexpr std::array<unsigned, 4> kLanesOfB{0, 0b1001, 0b0110, 0b1111};
 // The boxes under a node come from memory while others are tested. Links need not lead to any box,
-// and where there is no box, nor does what stands behind it.
+// and where there is no box, nor does what stands behind it. Another thread may be splitting the
+// node.
 OBB_INLINE void fetch_children(const TreeView& tree, const Node& node) {
     const auto fetch = [](std::uintptr_t place) {
         __builtin_prefetch(reinterpret_cast<const void*>(place));
     };
     fetch(reinterpret_cast<std::uintptr_t>(&node) + sizeof(Node));
-    fetch(reinterpret_cast<std::uintptr_t>(tree.nodes.data()) + sizeof(Node) * node.right);
+    const std::uint32_t right = __atomic_load_n(&node.right, __ATOMIC_RELAXED);
+    fetch(reinterpret_cast<std::uintptr_t>(tree.nodes.data()) + sizeof(Node) * right);
 }
 
 // Part k of a node that is opened, or the node as it is.
