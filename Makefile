@@ -241,10 +241,10 @@ ray-bounds gap-bounds: %: .build/lanes/%
 
 .build/lanes/ray-bounds: tests/lanes/ray_bounds.cpp
 .build/lanes/gap-bounds: tests/lanes/gap_bounds.cpp
-.build/lanes/ray-bounds .build/lanes/gap-bounds: $(SOURCES) | .venv/installed
-	@mkdir -p $(@D)
-	. ./.venv/compiler; $${CXX:-c++} -std=c++20 -O2 -ffp-contract=off -fno-math-errno -Wno-psabi -pthread \
-	  -I$(KERNELS) $< $(THREAD_KERNELS) -o $@
+# Linked to the kernels that same-bits has compiled.
+.build/lanes/ray-bounds .build/lanes/gap-bounds: .build/lanes/wide
+	. ./.venv/compiler; $${CXX:-c++} -std=c++20 -O2 -ffp-contract=off -fno-math-errno -Wno-psabi -pthread -I$(KERNELS) \
+	  $(filter tests/%,$^) $$(ls .build/lanes/wide.objects/*.o | grep -v lane_answers) -o $@
 
 determinism: .venv/test-tools
 	$(BIN)/python tests/determinism.py $(DETERMINISM_ARGS)
