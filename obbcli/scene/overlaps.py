@@ -6,20 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from obbcli.answers.counts import Counts
 from obbcli.answers.overlap import MEETING, Overlap
 from obbcli.questions.budget import Budget
-from obbcli.questions.overlap.band import MOST_GAP
+from obbcli.questions.overlap.band import most_gap
 from obbcli.questions.overlap.overlap import overlap_of
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.scene.pairs import ScenePairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
-    from obbcli.motion.body import Surface
     from obbcli.questions.overlap.asked import Asked
     from obbcli.scene.bodies import SceneParts
     from obbcli.scene.results import SceneStats
@@ -72,11 +69,11 @@ class Overlaps(Iterator[SceneOverlap]):
         self.accuracy = scene.accuracy
         named = None if pairs is None else list(pairs)
         loaded = [
-            shapes.load(body.body.shape)
+            (body.body, shapes.load(body.body.shape))
             for body in scene.bodies
             if named is None or any(body.name in pair for pair in named)
         ]
-        reach = max(scene.accuracy.clearance, _most_gap(loaded, asked))
+        reach = max(scene.accuracy.clearance, most_gap(loaded, asked.touch))
         near = replace(scene.accuracy, clearance=reach, distance_tolerance=None)
         self.asked = ScenePairs(scene._replace(duration=0.0, accuracy=near), shapes, named)
         self._left = iter(sorted(self.asked.candidates.pairs.tolist()))
@@ -111,13 +108,3 @@ class Overlaps(Iterator[SceneOverlap]):
         end = "in_contact" if found.relation in (*MEETING, "touching") else "apart"
         self._ends["open_" if found.relation == "unresolved" else end] += 1
         return found
-
-
-def _most_gap(shapes: Sequence[Surface], asked: Asked) -> float:
-    """Return what no pair's gap of the band exceeds, mesh units, without a look at coordinates."""
-    if asked.touch is not None:
-        return asked.touch[0]
-    bounds = [np.abs(shape.bounds).max() for shape in shapes]
-    sags = sorted(getattr(shape, "sag", None) or 0.0 for shape in shapes)[-2:]
-    largest = float(max(bounds, default=0.0))
-    return MOST_GAP * largest + sum(sags)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from movers.meshes import box
 
@@ -43,6 +44,15 @@ def test_band_that_is_asked_for_holds_for_all_pairs() -> None:
         ("flush", "sunk", "touching"),
         ("sunk", "near", "touching"),
     ]
+
+
+def test_bodies_far_from_the_origin_touch_within_the_rounding_of_their_places() -> None:
+    far = 1e12
+    gap = 4 * float(np.spacing(far))
+    pair = {"left": at(far), "right": at(far + 1 + gap)}
+
+    assert obbcli.overlap(*pair.values()).relation == "touching"
+    assert told(pair) == [("left", "right", "touching")]
 
 
 def test_pairs_are_asked_as_by_themselves() -> None:

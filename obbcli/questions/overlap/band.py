@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from obbcli.mesh.spacing import Spacing
-    from obbcli.motion.body import Body
+    from obbcli.motion.body import Body, Surface
     from obbcli.questions.pair_question import PairQuestion
     from obbcli.tree.tree import ObbTree
 
@@ -23,9 +23,9 @@ FLOOR = 1e-9
 """Of the pair's size: depths are not told apart below it."""
 _SPACINGS = 4.0
 _ASKED = "asked for"
-# Of the largest coordinate of any body, plus both sags: no default gap is wider. Sizes are at most
-# 2 sqrt(3) times that coordinate.
-MOST_GAP = _SPACINGS * COARSEST + 4.0 * FLOOR
+# Of the largest coordinate of a body that is not placed: what spacings and sizes come to at most.
+# Sizes are at most 2 sqrt(3) times that coordinate.
+_MOST = _SPACINGS * COARSEST + 4.0 * FLOOR
 
 
 def band_of(pair: PairQuestion, touch: Sequence[float] | None) -> Band:
@@ -63,6 +63,26 @@ def band_of(pair: PairQuestion, touch: Sequence[float] | None) -> Band:
     return Band(gap=width, overlap=width, slack=slack, reason=told)
 
 
+def most_gap(placed: Sequence[tuple[Body, Surface]], touch: Sequence[float] | None) -> float:
+    """Return what the gap of no two of some bodies exceeds, mesh units.
+
+    No coordinate is looked at: the spacings that meshes tell are bounded by their own bounds.
+
+    Args:
+        placed: the bodies, each with its shape, of which bounds are known.
+        touch: as `band_of` takes it.
+
+    Raises:
+        MotionError: as `band_of`.
+    """
+    if touch is not None:
+        return checked_touch(touch)[0]
+    sags = sorted(getattr(shape, "sag", None) or 0.0 for _, shape in placed)[-2:]
+    largest = max((float(np.abs(shape.bounds).max()) for _, shape in placed), default=0.0)
+    spacing = max((_placed_spacing(*one) for one in placed), default=0.0)
+    return _MOST * largest + _SPACINGS * spacing + sum(sags)
+
+
 def pair_size(pair: PairQuestion) -> float:
     """Return the larger diagonal of the boxes of A and B, unposed, mesh units."""
     return max(tree.size for tree in pair.trees)
@@ -87,6 +107,11 @@ def _spacing(body: Body, tree: ObbTree) -> Spacing:
     own = tree.mesh.coordinate_spacing
     if body.pose.is_identity:
         return own
-    reach = float(np.abs(tree.bounds).max()) + float(np.abs(body.pose.translation).max())
-    placed = float(np.spacing(reach))
+    placed = _placed_spacing(body, tree)
     return own if own.value >= placed else own._replace(value=placed, digits="float64, placed")
+
+
+def _placed_spacing(body: Body, surface: Surface) -> float:
+    """Return how far apart doubles are at the largest coordinate that a placed body may have."""
+    reach = float(np.abs(surface.bounds).max()) + float(np.abs(body.pose.translation).max())
+    return float(np.spacing(reach))
