@@ -49,12 +49,17 @@ class CancelledError(ObbError):
 
 
 @contextmanager
-def usage_errors() -> Iterator[None]:
-    """Turn a refused number into a usage error: what is typed on a command line is usage."""
+def usage_errors(**options: str) -> Iterator[None]:
+    """Turn a refused number into a usage error: what is typed on a command line is usage.
+
+    Args:
+        options: the options that arguments are given by, by the names of the arguments.
+    """
     try:
         yield
     except MotionError as fault:
-        raise UsageError(fault.where, fault.fault, fault.remedy) from fault
+        where = options.get(fault.where, fault.where)
+        raise UsageError(where, fault.fault, fault.remedy) from fault
 
 
 def guarded(command: Callable[[], int], words: Sequence[str]) -> int:

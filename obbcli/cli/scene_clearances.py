@@ -79,7 +79,7 @@ def clearances_of(scene: Scene, pairs: list[tuple[str, str]] | None, wanted: Wan
         raise SceneError(f"accuracy.{fault.where}", fault.fault, fault.remedy) from fault
     width = CLEARANCE_TOLERANCE if wanted.tolerance is None else wanted.tolerance
     try:
-        with usage_errors():
+        with usage_errors(tolerance="--tolerance"):
             return scene.clearances(
                 wanted.within, wanted.at_least, pairs, wanted.solid or None, tolerance=width
             )

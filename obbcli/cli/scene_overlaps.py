@@ -55,7 +55,7 @@ def overlaps_of(
     """
     width = DEPTH_TOLERANCE if tolerance is None else tolerance
     try:
-        with usage_errors():
+        with usage_errors(tolerance="--tolerance"):
             return scene.overlaps(pairs, tolerance=width, touch=touch)
     except SceneError as fault:
         # What is typed is usage.

@@ -92,7 +92,8 @@ def _sentence(record: Record) -> str:
         until = result["complete_until"]
         return f"a limit was reached: complete only before t = {until!r} s"
     if result["complete_until"] < end:
-        return f"{count(len(kinds))} pieces; more may follow: see --limit"
+        pieces = "1 piece" if len(kinds) == 1 else f"{count(len(kinds))} pieces"
+        return f"{pieces}; more may follow: see --limit"
     if kinds == ["free"]:
         return "free throughout"
     if kinds == ["contact"]:

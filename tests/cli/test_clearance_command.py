@@ -121,7 +121,7 @@ def test_solid_counts_what_is_inside(here, obbtree):
     ("words", "where"),
     [
         (("--greatest", "--solid"), "greatest"),
-        (("--curve", "3", "--solid"), "intervals"),
+        (("--curve", "3", "--solid"), "--curve"),
         (("--curve", "0"), "--curve"),
         (("--tolerance", "0"), "tolerance"),
         (("--tolerance", "1"), "tolerance"),

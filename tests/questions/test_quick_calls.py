@@ -8,8 +8,6 @@ import functools
 import inspect
 import pickle
 import pydoc
-import signal
-import subprocess
 import sys
 import weakref
 
@@ -248,67 +246,3 @@ def test_property_that_raises_is_not_hidden():
 
     with pytest.raises(RuntimeError, match="broken"):
         quick(Broken(), Broken())
-
-
-def ask_for_ever(a: ObbTree, b: Body) -> None:
-    while True:
-        quick(a, b)
-
-
-def test_handler_of_a_signal_ends_a_question():
-    class StopError(Exception):
-        pass
-
-    def stop(*_: object) -> None:
-        raise StopError
-
-    # Two sheets that cross nowhere near their middles: millions of pairs of boxes.
-    angles = np.linspace(0, 2 * np.pi, 60001)[:-1]
-    ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
-    vertices = np.concatenate([ring, ring * [0.9, 0.9, 1] + [0, 0, 0.2]])
-    n = len(angles)
-    rows = np.arange(n)
-    faces = np.column_stack([rows, (rows + 1) % n, rows + n])
-    tree = ObbTree.build(obbcli.Mesh(vertices, faces), lazy=False)
-    near = Body(tree, Pose(translation=[0, 0, 1e-9]))
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, 0.02)
-    try:
-        with pytest.raises(StopError):
-            ask_for_ever(tree, near)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-
-
-def test_seconds_of_a_question_that_ended_at_once_are_zero(tree):
-    far = Body(tree, Pose(translation=[500, 0, 0]))
-
-    assert quick(tree, far).stats.seconds == {"load": 0.0, "query": 0.0}
-
-
-def test_seconds_of_a_question_that_goes_on_are_measured():
-    here = Body(ObbTree.build(GEAR))
-    there = Body(ObbTree.build(GEAR), Pose([0, 0, 0.01]))
-
-    stats = quick(here, there).stats
-
-    assert stats.pops > 0
-    assert stats.seconds["query"] > 0
-
-
-def test_a_first_contact_is_the_first_question_of_a_process() -> None:
-    code = """
-import numpy as np
-from obbcli import Body, Mesh, Motion, ObbTree, Pose, first_contact
-corners = [(i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1)]
-faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4)]
-faces += [(2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
-tree = ObbTree.build(Mesh(np.array(corners, float), faces), lazy=False)
-for x in (0.5, 1.0, 1.01, 3.0):
-    print(first_contact(tree, Body(tree, Pose((0.3, -0.2, 0.5), (x, 0.1, -0.2)))).status)
-"""
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-
-    assert (ended.returncode, ended.stderr) == (0, "")
-    assert ended.stdout.split() == ["overlap_at_start"] * 3 + ["separated"]

@@ -97,7 +97,7 @@ def _wanted(flags: dict[str, Any]) -> Asked:
     from obbcli.questions.clearance.asked import Asked
 
     given = {name: value for name, value in flags.items() if value is not None}
-    with usage_errors():
+    with usage_errors(tolerance="--tolerance", greatest="--greatest", intervals="--curve"):
         return Asked.of(**given)
 
 

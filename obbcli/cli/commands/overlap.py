@@ -131,7 +131,7 @@ def _wanted(flags: dict[str, Any]) -> Asked:
         raise UsageError("--resolution", "is that of --regions", "add --regions, or leave it out")
     flags["regions"] = (resolution or flags["regions"]) if resolution != 0 else 0.0
     given = {name: value for name, value in flags.items() if value is not None}
-    with usage_errors():
+    with usage_errors(tolerance="--tolerance", along="--along", touch="--touch"):
         return Asked.of(**given)
 
 
