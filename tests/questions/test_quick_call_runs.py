@@ -79,3 +79,18 @@ for x in (0.5, 1.0, 1.01, 3.0):
 
     assert (ended.returncode, ended.stderr) == (0, "")
     assert ended.stdout.split() == ["overlap_at_start"] * 3 + ["separated"]
+
+
+def test_kernels_refuse_to_answer_before_they_know_the_class_of_answers() -> None:
+    code = """
+from obbcli import Mesh, ObbTree, Pose, kernels
+from obbcli.accuracy import Accuracy
+from obbcli.questions.border import limits_of
+tree = ObbTree.build(Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), lazy=False)
+placed = kernels.Placed(tree.kernel, Pose().kernel)
+kernels.collide(placed, placed, limits_of(Accuracy()), 0.0)
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+
+    assert ended.returncode == 1
+    assert "set_answer_classes() comes before questions at rest" in ended.stderr

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <new>
+#include <stdexcept>
 
 namespace {
 
@@ -168,11 +169,15 @@ void set_answer_classes(const nb::object& collision, const nb::object& stats,
 
 } // namespace
 
-PyObject* answer_of(const AtRestFound& found) {
-    PyObject* self = PyType_GenericAlloc(collision_class, 0);
-    if (self != nullptr) {
-        new (&cast(self)->found) AtRestFound(found);
+nb::object answer_of(const AtRestFound& found) {
+    if (collision_class == nullptr) {
+        throw std::logic_error("set_answer_classes() comes before questions at rest");
     }
+    const nb::object self = nb::steal(PyType_GenericAlloc(collision_class, 0));
+    if (!self.is_valid()) {
+        throw nb::python_error();
+    }
+    new (&cast(self.ptr())->found) AtRestFound(found);
     return self;
 }
 

@@ -67,8 +67,8 @@ inline void set_witness(AtRestFound& found, std::span<const obb::TrianglePair> p
     }
 }
 
-// An answer of the class that was made known; a new reference, null with an error set.
-[[nodiscard]] PyObject* answer_of(const AtRestFound& found);
+// An answer of the class that was made known; std::logic_error while none was.
+[[nodiscard]] nanobind::object answer_of(const AtRestFound& found);
 
 // What the kernels say of two placed trees. Throws std::domain_error, obb::TreeError, and what a
 // signal's handler raised.

@@ -68,10 +68,7 @@ nb::object called(PyObject* function, std::initializer_list<PyObject*> args) {
 
 nb::object answer_told(const CallObject& self, PyObject* a, PyObject* b, const AtRestFound& found,
                        bool has_parts) {
-    nb::object answer = nb::steal(answer_of(found));
-    if (!answer.is_valid()) {
-        throw nb::python_error();
-    }
+    nb::object answer = answer_of(found);
     if (self.told != Py_None) {
         return called(self.told, {a, b, answer.ptr()});
     }

@@ -69,7 +69,7 @@ nb::object collide(const Placed& a, const Placed& b, const obb::Limits& limits,
                    double load_seconds) {
     AtRestFound found = ask_at_rest(a, b, limits);
     found.load_seconds = load_seconds;
-    return nb::steal(answer_of(found));
+    return answer_of(found);
 }
 
 // More pairs than there is to be room for.
