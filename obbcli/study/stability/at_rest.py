@@ -8,19 +8,17 @@ contradict each other. Nothing else does.
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from obbcli.answers.overlap import Overlap
-from obbcli.errors import ObbError
 from obbcli.questions.distance import distance
 from obbcli.questions.overlap.asked import Asked, refuse_other_accuracy
 from obbcli.questions.overlap.overlap import overlap_of
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.study.stability import extremes, surfaces, units
-from obbcli.study.stability.battery import LARGEST, LEAST_POPS, PATIENCE, is_in_range
-from obbcli.study.stability.rows import RestRow, Stability
+from obbcli.study.stability.one_by_one import LEAST_POPS, PATIENCE, OneByOne
+from obbcli.study.stability.rows import RestRow
 from obbcli.study.stability.world import Trees, pair_of
 
 if TYPE_CHECKING:
@@ -61,7 +59,7 @@ class _Told(NamedTuple):
     bounds: dict[str, Bounds]
 
 
-class RestBattery:
+class RestBattery(OneByOne[RestRow]):
     """All extremes of a question about bodies at rest, tried one by one; as `Battery`.
 
     Args:
@@ -75,6 +73,9 @@ class RestBattery:
             poses.
         ObbError: as the question says.
     """
+
+    answer: Distance | Overlap
+    _row_kind = RestRow
 
     def __init__(
         self, a: Body | Shape, b: Body | Shape, accuracy: Accuracy | None, ask: RestAsk
@@ -99,30 +100,7 @@ class RestBattery:
         most = min(asked.max_iterations, max(PATIENCE * _steps(self.answer), LEAST_POPS))
         self._pair = self._pair._replace(accuracy=replace(asked, max_iterations=most))
         self._told = _told(self.answer, 1.0)
-        self._left = deque(_plan(self._pair, ask))
-        self.count = len(self._left)
-        self.rows: list[RestRow] = []
-
-    @property
-    def next_extreme(self) -> str:
-        """What `advance` tries next; empty where nothing is left."""
-        return f"{self._left[0].family}, {self._left[0].name}" if self._left else ""
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether all extremes were tried."""
-        return not self._left
-
-    def advance(self) -> RestRow:
-        """Try the next extreme; an interrupt leaves it to be tried."""
-        row = self._try(self._left[0])
-        self._left.popleft()
-        self.rows.append(row)
-        return row
-
-    def result(self) -> Stability:
-        """Return what is known so far."""
-        return Stability(self.answer, tuple(self.rows))
+        self._begin(_plan(self._pair, ask))
 
     def _answer(self, pair: Pair, length: float) -> Distance | Overlap:
         """Return the answer to a question; the band is that of the question itself, scaled."""
@@ -134,33 +112,13 @@ class RestBattery:
             PairQuestion.of(a, b, 0.0, pair.accuracy), Asked(touch=touch, values="deep")
         )
 
-    def _try(self, extreme: Extreme) -> RestRow:
-        changed = extreme.change()
-        is_swap = extreme.family == _SWAP
-        row = RestRow(
-            family=extreme.family,
-            extreme=extreme.name,
-            magnitude=extreme.magnitude,
-            expected="same bits" if is_swap and self._promises_bits else "within bound",
-            bound=changed.bound,
-            why=changed.why,
-            status=None,
-            time_bounds=None,
-            difference=None,
-            outcome="broken",
-            held=False,
-            reason="",
-        )
-        if not is_in_range(changed.pair):
-            reason = "numbers beyond the range of doubles"
-            return replace(row, outcome="refused", held=True, reason=reason)
-        try:
-            told = _told(self._answer(changed.pair, changed.length), changed.length)
-        except ObbError as fault:
-            is_right = changed.pair.largest > LARGEST
-            outcome: Outcome = "refused" if is_right else "broken"
-            return replace(row, outcome=outcome, held=is_right, reason=str(fault))
-        return self._judged(row, changed, _swapped(told) if is_swap else told)
+    def _expected(self, extreme: Extreme, _changed: Changed) -> str:
+        is_exact = extreme.family == _SWAP and self._promises_bits
+        return "same bits" if is_exact else "within bound"
+
+    def _answered(self, row: RestRow, changed: Changed) -> RestRow:
+        told = _told(self._answer(changed.pair, changed.length), changed.length)
+        return self._judged(row, changed, _swapped(told) if row.family == _SWAP else told)
 
     def _judged(self, row: RestRow, changed: Changed, told: _Told) -> RestRow:
         """Return the row of an answer."""

@@ -8,21 +8,17 @@ what is compared is what was promised.
 
 from __future__ import annotations
 
-import math
-from collections import deque
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from obbcli.answers.status import Status
-from obbcli.errors import ObbError
 from obbcli.questions.first_contact import first_contact
 from obbcli.questions.pair_question import PairQuestion
 from obbcli.study.stability import extremes, surfaces, units
+from obbcli.study.stability.one_by_one import LEAST_POPS, PATIENCE, OneByOne
 from obbcli.study.stability.proofs import Proofs, on_clock
-from obbcli.study.stability.rows import Row, Stability
+from obbcli.study.stability.rows import Row
 from obbcli.study.stability.samples import fault_of_samples
 from obbcli.study.stability.world import SLACK, Trees, pair_of
 
@@ -36,14 +32,8 @@ if TYPE_CHECKING:
     from obbcli.study.stability.rows import Outcome
     from obbcli.study.stability.world import Pair
 
-# An extreme may take this many times what the question itself took, and at least so many pops.
-PATIENCE = 200
-LEAST_POPS = 50_000
-# Beyond this a refusal is right: posed coordinates may reach about 1e307.
-LARGEST = 1e306
 
-
-class Battery:
+class Battery(OneByOne[Row]):
     """All extremes of a question, tried one by one.
 
     Args:
@@ -56,6 +46,9 @@ class Battery:
         MotionError: the method is sampled, or a body moves through poses.
         ObbError: as `first_contact` says.
     """
+
+    answer: FirstContact
+    _row_kind = Row
 
     def __init__(
         self,
@@ -76,58 +69,15 @@ class Battery:
         told = self._told
         low = None if told.is_free else float(told.free)
         high = None if told.met is None else float(told.met)
-        self._left = deque(plan(self._pair, low, high))
-        self.count = len(self._left)
-        self.rows: list[Row] = []
+        self._begin(plan(self._pair, low, high))
 
-    @property
-    def next_extreme(self) -> str:
-        """What `advance` tries next; empty where nothing is left."""
-        return f"{self._left[0].family}, {self._left[0].name}" if self._left else ""
+    def _expected(self, _extreme: Extreme, changed: Changed) -> str:
+        if not changed.is_related:
+            return "proven"
+        return "same bits" if changed.is_same else "within bound"
 
-    @property
-    def is_finished(self) -> bool:
-        """Whether all extremes were tried."""
-        return not self._left
-
-    def advance(self) -> Row:
-        """Try the next extreme; an interrupt leaves it to be tried."""
-        row = self._try(self._left[0])
-        self._left.popleft()
-        self.rows.append(row)
-        return row
-
-    def result(self) -> Stability:
-        """Return what is known so far."""
-        return Stability(self.answer, tuple(self.rows))
-
-    def _try(self, extreme: Extreme) -> Row:
-        changed = extreme.change()
-        row = Row(
-            family=extreme.family,
-            extreme=extreme.name,
-            magnitude=extreme.magnitude,
-            expected=_expected(changed),
-            bound=changed.bound,
-            why=changed.why,
-            status=None,
-            time_bounds=None,
-            difference=None,
-            outcome="broken",
-            held=False,
-            reason="",
-        )
-        if not is_in_range(changed.pair):
-            return replace(
-                row, outcome="refused", held=True, reason="numbers beyond the range of doubles"
-            )
-        try:
-            answer = self._ask(changed.pair)
-            return self._judged(row, changed, answer)
-        except ObbError as fault:
-            is_right = changed.pair.largest > LARGEST
-            outcome: Outcome = "refused" if is_right else "broken"
-            return replace(row, outcome=outcome, held=is_right, reason=str(fault))
+    def _answered(self, row: Row, changed: Changed) -> Row:
+        return self._judged(row, changed, self._ask(changed.pair))
 
     def _ask(self, pair: Pair) -> FirstContact:
         return first_contact(*self._trees.bodies(pair), pair.duration, pair.accuracy)
@@ -207,21 +157,6 @@ def plan(pair: Pair, low: float | None, high: float | None) -> Iterator[Extreme]
     yield from surfaces.spun(pair)
     yield from surfaces.tilted(pair)
     yield from surfaces.coarsened(pair)
-
-
-def _expected(changed: Changed) -> str:
-    if not changed.is_related:
-        return "proven"
-    return "same bits" if changed.is_same else "within bound"
-
-
-def is_in_range(pair: Pair) -> bool:
-    """Return whether all numbers of a question are finite."""
-    numbers = [pair.duration]
-    for side in pair.sides:
-        for rows in (side.vertices, side.velocity, side.spin, side.pivot):
-            numbers += [float(np.abs(rows).max())]
-    return all(math.isfinite(number) for number in numbers)
 
 
 def _cleared(pair: Pair, room: float) -> Pair:
